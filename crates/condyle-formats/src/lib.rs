@@ -1,0 +1,1 @@
+//! Bytes to values and back: marker recordings, motions, models, animated scenes.

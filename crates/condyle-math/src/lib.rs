@@ -1,0 +1,1 @@
+//! Numbers in space: vectors, rotations, transforms and scalar functions over one scalar trait.

@@ -1,0 +1,1 @@
+//! Dense bounded least squares for the few dozen unknowns of a skeleton.
