@@ -1,1 +1,46 @@
-//! Numbers in space: vectors, rotations, transforms and scalar functions over one scalar trait.
+//! Numbers in space: vectors, rotations, transforms and scalar functions over one [`Scalar`] trait.
+//!
+//! Everything that condyle computes on its hot paths is written once, generic over the number:
+//! [`f64`] gives values, [`Dual`] gives values with exact derivatives, and the trait is shaped so
+//! that lanes (several characters at once) can be added without touching a formula. For that reason
+//! [`Scalar`] has no comparison that yields a `bool`: choices are made with
+//! [`Scalar::select_less`], and table look-ups with [`Scalar::chain`].
+//!
+//! # Conventions
+//!
+//! Right-handed, metres, radians. Column vectors: `p_parent = T * p_child`, and a name says which
+//! frame it maps from and to: `scapula_in_thorax` takes scapula coordinates to thorax coordinates.
+//! Quaternions are `x, y, z, w`; `q` and `-q` are the same rotation. Rotation orders are named by
+//! the body-fixed axes in the order of the product: `zxy` = Rz·Rx·Ry.
+//!
+//! ```
+//! use condyle_math::{Affine, Quat, Vec3};
+//!
+//! // The elbow, flexed by a right angle about z, carries the forearm's tip from x to y.
+//! let quarter = std::f64::consts::FRAC_PI_2;
+//! let forearm_in_upper_arm =
+//!     Affine::from_rotation(Quat::from_axis_angle(Vec3::Z, quarter).to_mat3());
+//! let tip = forearm_in_upper_arm * Vec3::new(0.25, 0.0, 0.0);
+//! assert!((tip - Vec3::new(0.0, 0.25, 0.0)).norm() < 1e-15);
+//! ```
+
+mod affine;
+mod dual;
+mod euler;
+pub mod function;
+mod mat3;
+mod quat;
+mod scalar;
+mod swing_twist;
+mod twist;
+mod vec3;
+
+pub use affine::Affine;
+pub use dual::Dual;
+pub use euler::{EulerOrder, UnknownOrder};
+pub use mat3::Mat3;
+pub use quat::Quat;
+pub use scalar::Scalar;
+pub use swing_twist::SwingTwist;
+pub use twist::Twist;
+pub use vec3::Vec3;

@@ -1,0 +1,197 @@
+//! The twelve Euler sequences, both ways.
+//!
+//! An order is named by its body-fixed axes in the order of the product, so `zxy` is
+//! R = Rz(a)·Rx(b)·Ry(c). With i, j the first two axes, k the one left over and e the sign of the
+//! permutation (i, j, k), the matrix of the six orders i-j-k has
+//!
+//! ```text
+//! R_ik = e·sin b,   R_jk = -e·sin a·cos b,  R_kk = cos a·cos b,
+//! R_ij = -e·cos b·sin c,  R_ii = cos b·cos c
+//! ```
+//!
+//! and that of the six orders i-j-i has
+//!
+//! ```text
+//! R_ii = cos b,  R_ji = sin a·sin b,  R_ki = -e·cos a·sin b,  R_ij = sin b·sin c,  R_ik = e·sin b·cos c
+//! ```
+//!
+//! At the singular angle (b = ±90° for i-j-k; 0° or 180° for i-j-i) only a ± c is defined; the
+//! answer there has c = 0.
+
+use crate::{Mat3, Vec3};
+use std::fmt;
+use std::str::FromStr;
+
+/// Below this sine (or cosine) of the middle angle the outer two cannot be told apart.
+const SINGULAR_BELOW: f64 = 1e-9;
+
+/// One of the twelve orders of rotation about body-fixed axes.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub struct EulerOrder {
+    axes: [u8; 3],
+}
+
+impl EulerOrder {
+    /// All twelve, Tait-Bryan orders first.
+    pub const ALL: [Self; 12] = [
+        Self { axes: [0, 1, 2] },
+        Self { axes: [0, 2, 1] },
+        Self { axes: [1, 0, 2] },
+        Self { axes: [1, 2, 0] },
+        Self { axes: [2, 0, 1] },
+        Self { axes: [2, 1, 0] },
+        Self { axes: [0, 1, 0] },
+        Self { axes: [0, 2, 0] },
+        Self { axes: [1, 0, 1] },
+        Self { axes: [1, 2, 1] },
+        Self { axes: [2, 0, 2] },
+        Self { axes: [2, 1, 2] },
+    ];
+
+    /// Rx·Ry·Rz, the order of OpenSim's offset frames.
+    pub const XYZ: Self = Self { axes: [0, 1, 2] };
+
+    /// The three axes in the order of the product, each 0, 1 or 2.
+    pub fn axes(self) -> [usize; 3] {
+        self.axes.map(usize::from)
+    }
+
+    /// The rotation with these three angles in radians.
+    ///
+    /// ```
+    /// use condyle_math::{EulerOrder, Mat3};
+    /// let order: EulerOrder = "zxy".parse().unwrap();
+    /// let m = order.to_mat3([0.1, 0.2, 0.3]);
+    /// let twin = Mat3::rotation_z(0.1) * Mat3::rotation_x(0.2) * Mat3::rotation_y(0.3);
+    /// assert!((m.x - twin.x).norm() < 1e-15);
+    /// ```
+    pub fn to_mat3(self, angles: [f64; 3]) -> Mat3 {
+        let mut m = Mat3::IDENTITY;
+        for (axis, angle) in self.axes.into_iter().zip(angles) {
+            let turn = angle.sin_cos();
+            m = match axis {
+                0 => m.rotated_x(turn),
+                1 => m.rotated_y(turn),
+                _ => m.rotated_z(turn),
+            };
+        }
+        m
+    }
+
+    /// The three angles of a rotation, in radians.
+    ///
+    /// The outer two lie in (-π, π]; the middle one in [-π/2, π/2] for three different axes and in
+    /// [0, π] where the first axis returns.
+    pub fn from_mat3(self, rotation: Mat3) -> [f64; 3] {
+        let [i, j, last] = self.axes();
+        let k = 3 - i - j;
+        let e = if (j + 3 - i) % 3 == 1 { 1.0 } else { -1.0 };
+        let m = |r: usize, c: usize| rotation.at(r, c);
+        // With c = 0 the second column of Ri(a)·Rj(b) is that of Ri(a) alone.
+        let alone = || (e * m(k, j)).atan2(m(j, j));
+        if last == k {
+            let cosine = m(i, i).hypot(m(i, j));
+            let b = (e * m(i, k)).atan2(cosine);
+            if cosine < SINGULAR_BELOW {
+                return [alone(), b, 0.0];
+            }
+            [(-e * m(j, k)).atan2(m(k, k)), b, (-e * m(i, j)).atan2(m(i, i))]
+        } else {
+            let sine = m(i, j).hypot(m(i, k));
+            let b = sine.atan2(m(i, i));
+            if sine < SINGULAR_BELOW {
+                return [alone(), b, 0.0];
+            }
+            [m(j, i).atan2(-e * m(k, i)), b, m(i, j).atan2(e * m(i, k))]
+        }
+    }
+
+    /// The direction of axis number `index` (0, 1 or 2) of the sequence, before any rotation.
+    pub fn axis(self, index: usize) -> Vec3 {
+        [Vec3::X, Vec3::Y, Vec3::Z][self.axes()[index]]
+    }
+}
+
+impl fmt::Display for EulerOrder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.axes().iter().try_for_each(|&a| f.write_str(["x", "y", "z"][a]))
+    }
+}
+
+impl fmt::Debug for EulerOrder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+/// A name that is none of the twelve orders.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownOrder(String);
+
+impl fmt::Display for UnknownOrder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "unknown rotation order `{}`: expected three of x, y, z with no axis twice in a row, \
+             such as `zxy` or `yxy`",
+            self.0
+        )
+    }
+}
+
+impl std::error::Error for UnknownOrder {}
+
+impl FromStr for EulerOrder {
+    type Err = UnknownOrder;
+
+    fn from_str(name: &str) -> Result<Self, UnknownOrder> {
+        Self::ALL
+            .into_iter()
+            .find(|order| order.to_string().eq_ignore_ascii_case(name))
+            .ok_or_else(|| UnknownOrder(name.to_owned()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Quat;
+    use proptest::prelude::*;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    fn distance(a: Mat3, b: Mat3) -> f64 {
+        Quat::from_mat3(a).angle_to(Quat::from_mat3(b))
+    }
+
+    proptest! {
+        #[test]
+        fn angles_round_trip_in_every_order(a in -PI..PI, b in 0.01..FRAC_PI_2 - 0.01, c in -PI..PI) {
+            for order in EulerOrder::ALL {
+                let [p, q, r] = order.from_mat3(order.to_mat3([a, b, c]));
+                prop_assert!((p - a).abs() + (q - b).abs() + (r - c).abs() < 1e-12, "{order}");
+            }
+        }
+
+        #[test]
+        fn rotations_round_trip_at_and_near_the_singular_angle(
+            a in -PI..PI, c in -PI..PI, tiny in -17.0..-1.0f64, at in 0usize..4,
+        ) {
+            let b = [0.0, FRAC_PI_2, -FRAC_PI_2, PI][at] + 10f64.powf(tiny);
+            for order in EulerOrder::ALL {
+                let m = order.to_mat3([a, b, c]);
+                let again = order.to_mat3(order.from_mat3(m));
+                // Inside the singular band the third angle is set to 0: an error of its width.
+                prop_assert!(distance(m, again) < 4.0 * SINGULAR_BELOW, "{order}");
+            }
+        }
+    }
+
+    #[test]
+    fn there_are_twelve_names() {
+        let mut names: Vec<String> = EulerOrder::ALL.iter().map(ToString::to_string).collect();
+        names.dedup();
+        assert_eq!(names.len(), 12);
+        assert!("xxy".parse::<EulerOrder>().is_err());
+        assert_eq!("ZXY".parse::<EulerOrder>().unwrap().axes(), [2, 0, 1]);
+    }
+}

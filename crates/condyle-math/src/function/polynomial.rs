@@ -1,0 +1,36 @@
+//! Polynomials of one variable.
+
+/// A polynomial, such as the knee translations of Walker et al. 1988.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polynomial {
+    /// Coefficients, that of the constant term first.
+    ascending: Vec<f64>,
+}
+
+impl Polynomial {
+    /// The polynomial c0 + c1·x + c2·x² + …; no coefficients give the zero polynomial.
+    pub fn from_ascending(coefficients: Vec<f64>) -> Self {
+        Self { ascending: coefficients }
+    }
+
+    /// The polynomial whose list begins with the highest power, as `.osim` files write it.
+    ///
+    /// ```
+    /// use condyle_math::function::Polynomial;
+    /// // x² + 2x + 3 at x = 2
+    /// assert_eq!(Polynomial::from_descending(vec![1.0, 2.0, 3.0]).value_and_slope(2.0), (11.0, 6.0));
+    /// ```
+    pub fn from_descending(mut coefficients: Vec<f64>) -> Self {
+        coefficients.reverse();
+        Self { ascending: coefficients }
+    }
+
+    /// Value and derivative at `x`, by Horner's rule.
+    #[inline]
+    pub fn value_and_slope(&self, x: f64) -> (f64, f64) {
+        self.ascending
+            .iter()
+            .rev()
+            .fold((0.0, 0.0), |(value, slope), c| (value * x + c, slope * x + value))
+    }
+}

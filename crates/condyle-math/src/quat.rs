@@ -1,0 +1,286 @@
+//! Unit quaternions: rotations without a singular orientation.
+
+use crate::{Mat3, Scalar, Vec3};
+use std::ops::{Mul, Neg};
+
+/// Below this squared angle or sine the closed forms are replaced by their series.
+///
+/// The first omitted term is then below 1e-18, under the rounding of f64.
+const SERIES_BELOW: f64 = 1e-6;
+
+/// A quaternion x i + y j + z k + w; a rotation when its length is 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quat<S = f64> {
+    /// Component of i.
+    pub x: S,
+    /// Component of j.
+    pub y: S,
+    /// Component of k.
+    pub z: S,
+    /// Real component.
+    pub w: S,
+}
+
+impl Quat<f64> {
+    /// No rotation.
+    pub const IDENTITY: Self = Self { x: 0.0, y: 0.0, z: 0.0, w: 1.0 };
+
+    /// The same quaternion as constants of another scalar.
+    #[inline(always)]
+    pub fn cast<S: Scalar>(self) -> Quat<S> {
+        let [x, y, z, w] = self.to_array().map(S::from_f64);
+        Quat { x, y, z, w }
+    }
+
+    /// The geodesic angle to another rotation in radians, in [0, π]; `q` and `-q` are one rotation.
+    ///
+    /// θ = 2·acos|q·p|, computed by way of the sine so that small angles keep their digits.
+    ///
+    /// ```
+    /// use condyle_math::{Quat, Vec3};
+    /// let a = Quat::from_axis_angle(Vec3::X, 0.1);
+    /// let b = Quat::from_axis_angle(Vec3::X, -0.2);
+    /// assert!((a.angle_to(-b) - 0.3).abs() < 1e-15);
+    /// ```
+    pub fn angle_to(self, other: Self) -> f64 {
+        let between = self.conjugate() * other;
+        2.0 * between.vector().norm().atan2(between.w.abs())
+    }
+
+    /// The rotation of a matrix, by Shepperd's choice of the largest component.
+    ///
+    /// `rotation` must be a proper rotation; small deviations are absorbed by normalising.
+    pub fn from_mat3(rotation: Mat3<f64>) -> Self {
+        let m = |r: usize, c: usize| rotation.at(r, c);
+        let trace = m(0, 0) + m(1, 1) + m(2, 2);
+        let candidates = [m(0, 0), m(1, 1), m(2, 2), trace];
+        let largest = (0..4).max_by(|&a, &b| candidates[a].total_cmp(&candidates[b])).unwrap_or(3);
+        let q = match largest {
+            3 => [m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1), 1.0 + trace],
+            i => {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                let mut q = [0.0; 4];
+                q[i] = 1.0 + m(i, i) - m(j, j) - m(k, k);
+                q[j] = m(j, i) + m(i, j);
+                q[k] = m(k, i) + m(i, k);
+                q[3] = m(k, j) - m(j, k);
+                q
+            }
+        };
+        Self::from(q).normalized()
+    }
+}
+
+impl<S: Copy> From<[S; 4]> for Quat<S> {
+    #[inline(always)]
+    fn from([x, y, z, w]: [S; 4]) -> Self {
+        Self { x, y, z, w }
+    }
+}
+
+impl<S: Copy> Quat<S> {
+    /// The components in the order x, y, z, w.
+    #[inline(always)]
+    pub fn to_array(self) -> [S; 4] {
+        [self.x, self.y, self.z, self.w]
+    }
+
+    /// The vector part.
+    #[inline(always)]
+    pub fn vector(self) -> Vec3<S> {
+        Vec3::new(self.x, self.y, self.z)
+    }
+}
+
+impl<S: Scalar> Quat<S> {
+    /// The rotation by `angle` (radians) about an axis of length 1.
+    #[inline(always)]
+    pub fn from_axis_angle(axis: Vec3<S>, angle: S) -> Self {
+        let (s, c) = angle.scale(0.5).sin_cos();
+        Self { x: axis.x * s, y: axis.y * s, z: axis.z * s, w: c }
+    }
+
+    /// The exponential: the rotation about `v` by its length in radians; smooth at zero.
+    #[inline]
+    pub fn exp(v: Vec3<S>) -> Self {
+        let square = v.norm_squared();
+        let small = S::from_f64(SERIES_BELOW);
+        // The closed form is evaluated away from 0 even where the series is taken.
+        let angle = square.select_less(small, S::one(), square).sqrt();
+        let (s, c) = angle.scale(0.5).sin_cos();
+        let factor = square.select_less(
+            small,
+            S::from_f64(0.5) - square.scale(1.0 / 48.0) + (square * square).scale(1.0 / 3840.0),
+            s / angle,
+        );
+        let w = square.select_less(
+            small,
+            S::one() - square.scale(1.0 / 8.0) + (square * square).scale(1.0 / 384.0),
+            c,
+        );
+        Self { x: v.x * factor, y: v.y * factor, z: v.z * factor, w }
+    }
+
+    /// The logarithm: the shortest rotation vector, of length in [0, π]; inverse of [`Quat::exp`].
+    ///
+    /// At exactly π both signs of the axis are right; the one stored in the quaternion is returned.
+    #[inline]
+    pub fn log(self) -> Vec3<S> {
+        let near = self.w.select_less(S::zero(), -S::one(), S::one());
+        let (v, w) = (self.vector() * near, self.w * near);
+        let square = v.norm_squared();
+        let small = S::from_f64(SERIES_BELOW);
+        let sine = square.select_less(small, S::one(), square).sqrt();
+        let closed = sine.atan2(w).scale(2.0) / sine;
+        // For a small vector part w is near 1, so dividing by it is safe there only.
+        let w_safe = square.select_less(small, w, S::one());
+        let t = square / (w_safe * w_safe);
+        let series = (S::one() - t.scale(1.0 / 3.0) + (t * t).scale(1.0 / 5.0)).scale(2.0) / w_safe;
+        v * square.select_less(small, series, closed)
+    }
+
+    /// The inverse rotation.
+    #[inline(always)]
+    pub fn conjugate(self) -> Self {
+        Self { x: -self.x, y: -self.y, z: -self.z, w: self.w }
+    }
+
+    /// The inner product of four components.
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> S {
+        self.x * other.x + self.y * other.y + self.z * other.z + self.w * other.w
+    }
+
+    /// The same rotation with length 1; not finite for the zero quaternion.
+    #[inline(always)]
+    pub fn normalized(self) -> Self {
+        let r = S::one() / self.dot(self).sqrt();
+        Self { x: self.x * r, y: self.y * r, z: self.z * r, w: self.w * r }
+    }
+
+    /// The rotation matrix; any length but zero is allowed and divided out.
+    #[inline(always)]
+    pub fn to_mat3(self) -> Mat3<S> {
+        let s = S::from_f64(2.0) / self.dot(self);
+        let (xs, ys, zs) = (self.x * s, self.y * s, self.z * s);
+        let (wx, wy, wz) = (self.w * xs, self.w * ys, self.w * zs);
+        let (xx, xy, xz) = (self.x * xs, self.x * ys, self.x * zs);
+        let (yy, yz, zz) = (self.y * ys, self.y * zs, self.z * zs);
+        let one = S::one();
+        Mat3::from_columns(
+            Vec3::new(one - (yy + zz), xy + wz, xz - wy),
+            Vec3::new(xy - wz, one - (xx + zz), yz + wx),
+            Vec3::new(xz + wy, yz - wx, one - (xx + yy)),
+        )
+    }
+}
+
+impl<S: Scalar> Mul for Quat<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, b: Self) -> Self {
+        let a = self;
+        Self {
+            x: a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+            y: a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+            z: a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w,
+            w: a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
+        }
+    }
+}
+
+impl<S: Scalar> Neg for Quat<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { x: -self.x, y: -self.y, z: -self.z, w: -self.w }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Dual;
+    use proptest::prelude::*;
+    use std::f64::consts::PI;
+
+    fn vectors(radius: f64) -> impl Strategy<Value = Vec3> {
+        [-1.0..1.0, -1.0..1.0, -1.0..1.0f64]
+            .prop_filter("a direction", |v| v.iter().map(|c| c * c).sum::<f64>() > 1e-4)
+            .prop_flat_map(move |v| {
+                (0.0..=radius).prop_map(move |r| Vec3::from(v).normalized() * r)
+            })
+    }
+
+    proptest! {
+        #[test]
+        fn log_inverts_exp_up_to_pi(v in vectors(PI - 1e-9)) {
+            prop_assert!((Quat::exp(v).log() - v).norm() < 1e-13 * (1.0 + v.norm()));
+        }
+
+        #[test]
+        fn exp_and_log_are_safe_near_zero_and_pi(v in vectors(1.0), near_pi in any::<bool>(),
+                                                 tiny in -18.0..-1.0f64) {
+            let size = 10f64.powf(tiny);
+            let v = v.normalized() * if near_pi { PI - size } else { size };
+            let back = Quat::exp(v).log();
+            // At π itself the axis may come back reversed: compare as rotations.
+            prop_assert!(Quat::exp(back).angle_to(Quat::exp(v)) < 1e-14);
+            if !near_pi {
+                prop_assert!((back - v).norm() <= 1e-15 * v.norm());
+            }
+        }
+
+        #[test]
+        fn matrix_round_trip_by_shepperd(v in vectors(PI)) {
+            let q = Quat::exp(v);
+            prop_assert!(Quat::from_mat3(q.to_mat3()).angle_to(q) < 1e-14);
+            let m = q.to_mat3();
+            prop_assert!((m.determinant() - 1.0).abs() < 1e-14);
+            let axis = v * (1.0 / v.norm().max(1e-300));
+            if v.norm() > 1e-3 {
+                let twin = Mat3::rotation_about(axis, v.norm().sin_cos());
+                prop_assert!((m.x - twin.x).norm() + (m.y - twin.y).norm() < 1e-14);
+            }
+        }
+
+        #[test]
+        fn derivatives_of_exp_and_log_equal_central_differences(v in vectors(3.0)) {
+            let h = 1e-6;
+            for i in 0..3 {
+                let mut step = [0.0; 3];
+                step[i] = h;
+                let step = Vec3::from(step);
+                let mut dual = v.cast::<Dual<1>>().to_array();
+                dual[i].partials[0] = 1.0;
+                let exact = Quat::exp(Vec3::from(dual));
+                let (a, b) = (Quat::exp(v + step).to_array(), Quat::exp(v - step).to_array());
+                for (e, (a, b)) in exact.to_array().iter().zip(a.into_iter().zip(b)) {
+                    prop_assert!((e.partials[0] - (a - b) / (2.0 * h)).abs() < 1e-8);
+                }
+                // log(exp(v)) = v, so its derivative is the unit vector.
+                let back = exact.log().to_array();
+                for (j, b) in back.iter().enumerate() {
+                    let expected = if i == j { 1.0 } else { 0.0 };
+                    prop_assert!((b.partials[0] - expected).abs() < 1e-9);
+                }
+            }
+        }
+
+        #[test]
+        fn products_agree_with_matrices(a in vectors(3.0), b in vectors(3.0)) {
+            let (p, q) = (Quat::exp(a), Quat::exp(b));
+            let (m, n) = ((p * q).to_mat3(), p.to_mat3() * q.to_mat3());
+            prop_assert!((m.x - n.x).norm() + (m.y - n.y).norm() + (m.z - n.z).norm() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn half_turns_keep_their_axis() {
+        for axis in [Vec3::X, Vec3::Y, Vec3::Z, Vec3::new(0.6, 0.0, -0.8)] {
+            let q = Quat::from_mat3(Mat3::rotation_about(axis, PI.sin_cos()));
+            assert!((q.log().norm() - PI).abs() < 1e-14);
+            assert!((q.log().normalized().dot(axis).abs() - 1.0).abs() < 1e-14);
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! The number that kernels are generic over.
+
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// A real number, or several at once, or one with its derivatives.
+///
+/// Implemented for [`f64`] and [`Dual`](crate::Dual). The trait leaves room for lanes: nothing in
+/// it answers a question about the number with a single `bool`.
+pub trait Scalar:
+    Copy
+    + Debug
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + Send
+    + Sync
+    + 'static
+{
+    /// A constant.
+    fn from_f64(value: f64) -> Self;
+
+    /// The square root; its derivative at 0 is infinite.
+    fn sqrt(self) -> Self;
+
+    /// Sine and cosine of an angle in radians.
+    fn sin_cos(self) -> (Self, Self);
+
+    /// The angle in radians, in (-π, π], of the point (`x`, `self`).
+    fn atan2(self, x: Self) -> Self;
+
+    /// A function known only by its value and its derivative, applied to every lane.
+    ///
+    /// `law` returns `(f(x), f'(x))`. This is how splines and other tables enter a kernel.
+    fn chain(self, law: impl Fn(f64) -> (f64, f64)) -> Self;
+
+    /// `then` where `self < bound`, `otherwise` elsewhere, lane by lane.
+    ///
+    /// Both branches are evaluated before the choice: guard divisions in the branch not taken.
+    fn select_less(self, bound: Self, then: Self, otherwise: Self) -> Self;
+
+    /// Zero.
+    #[inline(always)]
+    fn zero() -> Self {
+        Self::from_f64(0.0)
+    }
+
+    /// One.
+    #[inline(always)]
+    fn one() -> Self {
+        Self::from_f64(1.0)
+    }
+
+    /// The absolute value.
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.select_less(Self::zero(), -self, self)
+    }
+
+    /// The product with a plain number.
+    #[inline(always)]
+    fn scale(self, factor: f64) -> Self {
+        self * Self::from_f64(factor)
+    }
+}
+
+impl Scalar for f64 {
+    #[inline(always)]
+    fn from_f64(value: f64) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        f64::sin_cos(self)
+    }
+
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        f64::atan2(self, x)
+    }
+
+    #[inline(always)]
+    fn chain(self, law: impl Fn(f64) -> (f64, f64)) -> Self {
+        law(self).0
+    }
+
+    #[inline(always)]
+    fn select_less(self, bound: Self, then: Self, otherwise: Self) -> Self {
+        if self < bound { then } else { otherwise }
+    }
+
+    #[inline(always)]
+    fn scale(self, factor: f64) -> Self {
+        self * factor
+    }
+}
