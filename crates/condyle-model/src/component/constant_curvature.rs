@@ -1,0 +1,60 @@
+//! The end of an arc of fixed length, bent by two angles and twisted by a third.
+//!
+//! R = Rx(α)·Rz(β)·Ry(γ), each angle being its coordinate plus its neutral angle, held to ±(90° -
+//! 0.01). With t = R·y and s = √(t_x² + t_z²) the arc turns by θ = asin s at radius L/θ, so
+//!
+//! ```text
+//! p = L/θ · ((1 - cos θ)·t_x/s,  s,  (1 - cos θ)·t_z/s)
+//! ```
+//!
+//! For s below 0.001 or above 0.999 OpenSim takes a straight rod p = L·t instead; so do we, to
+//! agree with it. The jump that this makes at s = 0.999 is OpenSim's.
+
+use super::{Law, Source};
+use condyle_math::{Affine, Mat3, Scalar, Vec3};
+use std::f64::consts::FRAC_PI_2;
+
+/// A flexible column such as a simplified lumbar spine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConstantCurvature {
+    /// Angles about x, z and y, in this order, in radians.
+    pub angles: [Source; 3],
+    /// What is added to the angles.
+    pub neutral: [f64; 3],
+    /// Length of the arc in metres.
+    pub length: f64,
+}
+
+impl Law for ConstantCurvature {
+    fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
+        let bound = S::from_f64(FRAC_PI_2 - 0.01);
+        let mut turns = [(S::zero(), S::one()); 3];
+        for i in 0..3 {
+            let angle = inputs[i] + S::from_f64(self.neutral[i]);
+            let held = angle.select_less(-bound, -bound, bound.select_less(angle, bound, angle));
+            turns[i] = held.sin_cos();
+        }
+        let rotation = Mat3::identity().rotated_x(turns[0]).rotated_z(turns[1]).rotated_y(turns[2]);
+        let tip = rotation.y;
+        let length = S::from_f64(self.length);
+        let (low, high) = (S::from_f64(0.001), S::from_f64(0.999));
+        let square = tip.x * tip.x + tip.z * tip.z;
+        // A stand-in inside the arc's domain keeps the branch not taken finite.
+        let stand_in = S::from_f64(0.25);
+        let safe = square.select_less(low * low, stand_in, square);
+        let safe = (high * high).select_less(safe, stand_in, safe);
+        let sine = safe.sqrt();
+        let cosine = (S::one() - safe).sqrt();
+        let theta = sine.atan2(cosine);
+        let radius = length / theta;
+        let out = radius * (S::one() - cosine) / sine;
+        let arc = Vec3::new(out * tip.x, radius * sine, out * tip.z);
+        let rod = tip * length;
+        let choose = |arc: S, rod: S| {
+            let inside = square.select_less(low * low, rod, arc);
+            (high * high).select_less(square, rod, inside)
+        };
+        let end = Vec3::new(choose(arc.x, rod.x), choose(arc.y, rod.y), choose(arc.z, rod.z));
+        Affine::new(rotation, end)
+    }
+}

@@ -1,0 +1,13 @@
+//! One scalar to several: yᵢ = fᵢ(x) (Shao & Ng-Thow-Hing 2003, section 4.2).
+
+use super::Source;
+use condyle_math::function::Function;
+
+/// One intention to many coordinates: a flexion that moves a knee's tibia by three functions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Map {
+    /// The argument.
+    pub input: Source,
+    /// One function for each output.
+    pub functions: Vec<Function>,
+}

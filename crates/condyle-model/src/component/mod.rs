@@ -1,0 +1,151 @@
+//! The pieces that joint sets are made of.
+//!
+//! A component reads scalars (angles in radians, distances in metres), orientations or transforms
+//! and makes scalars or one transform of them. Its formula stands at the top of its file. All
+//! components here are smooth: run on [`Dual`](condyle_math::Dual) numbers they yield their exact
+//! derivative, and the generator of a transform T(x) is the twist Ṫ·T⁻¹ in the frame it maps to.
+//!
+//! | component | in → out |
+//! | --- | --- |
+//! | [`Map`] | scalar → scalars, one function each |
+//! | [`Combine`] | scalars → scalar |
+//! | [`Rotate`] | angle → rotation about a fixed axis |
+//! | [`Translate`] | distance → translation along a fixed axis |
+//! | [`Ball`] | orientation → rotation |
+//! | [`Place`] | nothing → a fixed transform |
+//! | [`Ellipsoid`] | three angles → a frame that glides on an ellipsoid |
+//! | [`ConstantCurvature`] | three angles → the end of an arc of fixed length |
+//! | [`Product`] | transforms → their product |
+//!
+//! To add one: a file here with its struct and its formula, a variant of [`Component`], its ports
+//! in [`Component::inputs`] and [`Component::outputs`], and its lowering in `evaluate/compile.rs`;
+//! a kind that is a smooth law of scalars needs only a [`Law`] there.
+
+mod ball;
+mod combine;
+mod constant_curvature;
+mod ellipsoid;
+mod map;
+mod place;
+mod product;
+mod rotate;
+mod translate;
+
+pub use ball::Ball;
+pub use combine::Combine;
+pub use constant_curvature::ConstantCurvature;
+pub use ellipsoid::Ellipsoid;
+pub use map::Map;
+pub use place::Place;
+pub use product::Product;
+pub use rotate::Rotate;
+pub use translate::Translate;
+
+use crate::model::{ComponentId, CoordinateId};
+use condyle_math::{Affine, Scalar};
+
+/// Where a component's input, or a segment's motion, comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Source {
+    /// The effective value of a coordinate, of any joint set.
+    Coordinate(CoordinateId),
+    /// One output of a component, of any joint set.
+    Output(ComponentId, u32),
+}
+
+impl From<CoordinateId> for Source {
+    fn from(id: CoordinateId) -> Self {
+        Self::Coordinate(id)
+    }
+}
+
+/// What flows through a port.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PortType {
+    /// One number: an angle, a distance, a factor.
+    Scalar,
+    /// A unit quaternion.
+    Orientation,
+    /// A transform.
+    Transform,
+}
+
+/// A component of a joint set: its parameters and where its inputs come from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Component {
+    /// Scalar to scalars.
+    Map(Map),
+    /// Scalars to scalar.
+    Combine(Combine),
+    /// Rotation about a fixed axis.
+    Rotate(Rotate),
+    /// Translation along a fixed axis.
+    Translate(Translate),
+    /// Rotation by an orientation.
+    Ball(Ball),
+    /// A fixed transform.
+    Place(Place),
+    /// Gliding on an ellipsoid.
+    Ellipsoid(Ellipsoid),
+    /// Bending along an arc.
+    ConstantCurvature(ConstantCurvature),
+    /// Product of transforms.
+    Product(Product),
+}
+
+impl Component {
+    /// The component's name in files and messages.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Map(_) => "map",
+            Self::Combine(_) => "combine",
+            Self::Rotate(_) => "rotate",
+            Self::Translate(_) => "translate",
+            Self::Ball(_) => "ball",
+            Self::Place(_) => "place",
+            Self::Ellipsoid(_) => "ellipsoid",
+            Self::ConstantCurvature(_) => "constant_curvature",
+            Self::Product(_) => "product",
+        }
+    }
+
+    /// The inputs: the name and type of each port, and where it is connected.
+    pub fn inputs(&self) -> Vec<(&'static str, PortType, Source)> {
+        use PortType::{Orientation, Scalar, Transform};
+        let three = |names: [&'static str; 3], sources: [Source; 3]| {
+            names.into_iter().zip(sources).map(|(name, s)| (name, Scalar, s)).collect()
+        };
+        match self {
+            Self::Map(c) => vec![("input", Scalar, c.input)],
+            Self::Combine(c) => c.inputs.iter().map(|&s| ("inputs", Scalar, s)).collect(),
+            Self::Rotate(c) => vec![("angle", Scalar, c.angle)],
+            Self::Translate(c) => vec![("distance", Scalar, c.distance)],
+            Self::Ball(c) => vec![("orientation", Orientation, c.orientation)],
+            Self::Place(_) => vec![],
+            Self::Ellipsoid(c) => three(["about_x", "about_y", "about_z"], c.angles),
+            Self::ConstantCurvature(c) => three(["about_x", "about_z", "about_y"], c.angles),
+            Self::Product(c) => c.factors.iter().map(|&s| ("factors", Transform, s)).collect(),
+        }
+    }
+
+    /// The type of what comes out, and how many outputs of it there are.
+    pub fn outputs(&self) -> (PortType, usize) {
+        match self {
+            Self::Map(c) => (PortType::Scalar, c.functions.len()),
+            Self::Combine(_) => (PortType::Scalar, 1),
+            _ => (PortType::Transform, 1),
+        }
+    }
+}
+
+/// A smooth transform-valued law of a few scalars, written once for every number.
+pub trait Law {
+    /// The transform at these inputs, in the order of [`Component::inputs`].
+    fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S>;
+}
+
+/// The most inputs that a [`Law`] may have.
+pub const MOST_LAW_INPUTS: usize = 4;
+
+/// The most scalars that one [`Combine`] may read.
+pub const MOST_COMBINED: usize = 16;

@@ -1,0 +1,15 @@
+//! Translation along a fixed axis: T = \[I | d·a\].
+//!
+//! Generator: (0, a).
+
+use super::Source;
+use condyle_math::Vec3;
+
+/// A slide: one distance moves along one axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Translate {
+    /// The distance in metres.
+    pub distance: Source,
+    /// The axis; its length is normalised when the model is built.
+    pub axis: Vec3,
+}

@@ -1,0 +1,96 @@
+//! Running the elementary steps of a chain.
+
+use super::program::{Program, Step};
+use crate::component::{Law, MOST_LAW_INPUTS};
+use condyle_math::{Affine, Mat3, Quat, Scalar, Twist, Vec3};
+
+/// Hears of every elementary motion while a chain runs.
+///
+/// The twists are those of the chain's base frame (the world, for segments), per unit of the scalar
+/// that moves.
+pub(super) trait Recorder<S> {
+    /// A turn or slide by one scalar.
+    fn motion(&mut self, twist: impl FnOnce() -> Twist<S>);
+    /// A smooth law, about to be multiplied to `before`.
+    fn law(&mut self, program: &Program, law: u32, before: Affine<S>);
+    /// A transform computed before, about to be multiplied to `before`.
+    fn transform(&mut self, program: &Program, register: u32, before: Affine<S>);
+}
+
+/// Records nothing: plain evaluation.
+pub(super) struct Silent;
+
+impl<S> Recorder<S> for Silent {
+    #[inline(always)]
+    fn motion(&mut self, _: impl FnOnce() -> Twist<S>) {}
+    #[inline(always)]
+    fn law(&mut self, _: &Program, _: u32, _: Affine<S>) {}
+    #[inline(always)]
+    fn transform(&mut self, _: &Program, _: u32, _: Affine<S>) {}
+}
+
+/// The product of a base transform and the steps after it.
+#[inline(always)]
+pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
+    program: &Program,
+    steps: &[Step],
+    base: Affine<S>,
+    scalars: &[S],
+    transforms: &[Affine<S>],
+    recorder: &mut R,
+) -> Affine<S> {
+    let mut frame = base;
+    for step in steps {
+        let (r, origin) = (frame.linear, frame.translation);
+        match *step {
+            Step::Shift(offset) => frame = frame.shifted(offset.cast()),
+            Step::Fixed(index) => frame = frame * program.fixed[index as usize].cast(),
+            Step::TurnX(angle) => {
+                recorder.motion(|| Twist::rotation(r.x, origin));
+                frame.linear = r.rotated_x(scalars[angle as usize].sin_cos());
+            }
+            Step::TurnY(angle) => {
+                recorder.motion(|| Twist::rotation(r.y, origin));
+                frame.linear = r.rotated_y(scalars[angle as usize].sin_cos());
+            }
+            Step::TurnZ(angle) => {
+                recorder.motion(|| Twist::rotation(r.z, origin));
+                frame.linear = r.rotated_z(scalars[angle as usize].sin_cos());
+            }
+            Step::Turn { axis, angle } => {
+                let axis: Vec3<S> = axis.cast();
+                recorder.motion(|| Twist::rotation(r * axis, origin));
+                let turn = Mat3::rotation_about(axis, scalars[angle as usize].sin_cos());
+                frame.linear = r * turn;
+            }
+            Step::Slide { axis, distance } => {
+                let along = r * axis.cast();
+                recorder.motion(|| Twist::translation(along));
+                frame.translation = origin + along * scalars[distance as usize];
+            }
+            Step::Ball(orientation) => {
+                let q = orientation as usize;
+                let q = [scalars[q], scalars[q + 1], scalars[q + 2], scalars[q + 3]];
+                frame.linear = r * Quat::from(q).to_mat3();
+                let turned = frame.linear;
+                recorder.motion(|| Twist::rotation(turned.x, origin));
+                recorder.motion(|| Twist::rotation(turned.y, origin));
+                recorder.motion(|| Twist::rotation(turned.z, origin));
+            }
+            Step::Law(index) => {
+                recorder.law(program, index, frame);
+                let call = &program.laws[index as usize];
+                let mut inputs = [S::zero(); MOST_LAW_INPUTS];
+                for (value, &register) in inputs.iter_mut().zip(&call.inputs) {
+                    *value = scalars[register as usize];
+                }
+                frame = frame * call.law.transform(&inputs);
+            }
+            Step::Transform(register) => {
+                recorder.transform(program, register, frame);
+                frame = frame * transforms[register as usize];
+            }
+        }
+    }
+    frame
+}

@@ -1,0 +1,145 @@
+//! How far loops are from being closed, and how that changes.
+
+use super::jacobian::Jacobian;
+use super::pose::Pose;
+use super::program::Program;
+use crate::model::{Condition, CoordinateId, Model};
+use condyle_math::{Affine, Quat, Vec3};
+
+/// Residual rows of all closures of a model, and their dense derivative.
+///
+/// Metres and radians; a closed loop has residual 0. The rows of a point closure are the gap
+/// p₁ - p₂ in the world; those of a frame closure the gap and the rotation vector between the
+/// frames; that of a distance |p₁ - p₂| - d.
+#[derive(Clone, Debug)]
+pub struct ClosureRows {
+    /// One number for each row.
+    pub residuals: Vec<f64>,
+    /// Row by row, one number for each direction.
+    pub derivatives: Vec<f64>,
+    tangents: usize,
+}
+
+impl ClosureRows {
+    /// Buffers for a model.
+    pub fn new(model: &Model) -> Self {
+        let rows = model.closures().iter().map(|c| c.condition.rows()).sum();
+        let tangents = model.tangent_len();
+        Self { residuals: vec![0.0; rows], derivatives: vec![0.0; rows * tangents], tangents }
+    }
+
+    /// The number of rows.
+    pub fn len(&self) -> usize {
+        self.residuals.len()
+    }
+
+    /// Whether the model has no closures.
+    pub fn is_empty(&self) -> bool {
+        self.residuals.is_empty()
+    }
+
+    /// The derivative of one row with respect to every direction.
+    pub fn row(&self, row: usize) -> &[f64] {
+        &self.derivatives[row * self.tangents..(row + 1) * self.tangents]
+    }
+
+    /// Recomputes residuals, and derivatives where a Jacobian of the same evaluation is given.
+    pub fn update(
+        &mut self,
+        model: &Model,
+        program: &Program,
+        pose: &Pose,
+        jacobian: Option<&Jacobian>,
+    ) {
+        if jacobian.is_some() {
+            self.derivatives.fill(0.0);
+        }
+        let tangents = self.tangents;
+        let mut row = 0;
+        for closure in model.closures() {
+            let rows = closure.condition.rows();
+            let residuals = &mut self.residuals[row..row + rows];
+            let derivatives = &mut self.derivatives[row * tangents..(row + rows) * tangents];
+            row += rows;
+            match &closure.condition {
+                Condition::Points { at } => {
+                    let [p, q] = at.map(|(s, point)| pose.frame(s) * point);
+                    residuals.copy_from_slice(&(p - q).to_array());
+                    let Some(jacobian) = jacobian else { continue };
+                    for ((segment, _), point, sign) in [(at[0], p, 1.0), (at[1], q, -1.0)] {
+                        jacobian.visit_point(program, segment, point, |direction, velocity| {
+                            for (i, v) in velocity.to_array().into_iter().enumerate() {
+                                derivatives[i * tangents + direction] += sign * v;
+                            }
+                        });
+                    }
+                }
+                Condition::Distance { at, distance } => {
+                    let [p, q] = at.map(|(s, point)| pose.frame(s) * point);
+                    let gap = p - q;
+                    let length = gap.norm();
+                    residuals[0] = length - distance;
+                    let Some(jacobian) = jacobian else { continue };
+                    // Coinciding points have no direction to part in: any one will do.
+                    let along = if length > 1e-12 { gap * (1.0 / length) } else { Vec3::X };
+                    for ((segment, _), point, sign) in [(at[0], p, 1.0), (at[1], q, -1.0)] {
+                        jacobian.visit_point(program, segment, point, |direction, velocity| {
+                            derivatives[direction] += sign * along.dot(velocity);
+                        });
+                    }
+                }
+                Condition::Frames { at } => {
+                    let [a, b]: [Affine; 2] = at.map(|(s, frame)| pose.frame(s) * frame);
+                    // ρ = log(R_a·R_bᵀ), in the world; near closure ρ̇ = ω_a - ω_b.
+                    let between = a.linear * b.linear.transpose();
+                    let turn = Quat::from_mat3(between).log();
+                    let gap = a.translation - b.translation;
+                    residuals[..3].copy_from_slice(&gap.to_array());
+                    residuals[3..].copy_from_slice(&turn.to_array());
+                    let Some(jacobian) = jacobian else { continue };
+                    for ((segment, _), frame, sign) in [(at[0], a, 1.0), (at[1], b, -1.0)] {
+                        let Some(segment) = segment else { continue };
+                        for &(direction, twist) in program.segment_directions(segment) {
+                            let twist = jacobian.twist(twist);
+                            let linear = twist.velocity_at(frame.translation).to_array();
+                            // The second frame's turn enters carried through R_a·R_bᵀ.
+                            let spin =
+                                if sign > 0.0 { twist.angular } else { between * twist.angular };
+                            let angular = log_rate(turn, spin).to_array();
+                            for i in 0..3 {
+                                derivatives[i * tangents + direction as usize] += sign * linear[i];
+                                derivatives[(i + 3) * tangents + direction as usize] +=
+                                    sign * angular[i];
+                            }
+                        }
+                    }
+                }
+                Condition::Coupling { follower, driver, function } => {
+                    let value = |id: CoordinateId| pose.coordinate(model, id)[0];
+                    let (wanted, slope) = function.value_and_slope(value(*driver));
+                    residuals[0] = value(*follower) - wanted;
+                    if jacobian.is_some() {
+                        derivatives[model.tangent_range(*follower).start] += 1.0;
+                        derivatives[model.tangent_range(*driver).start] -= slope;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The rate of the rotation vector ρ when its rotation turns with `spin` from the left.
+///
+/// ρ̇ = ω - ½ ρ × ω + (1/θ² - (1 + cos θ)/(2 θ sin θ)) ρ × (ρ × ω), the inverse left Jacobian of SO(3).
+fn log_rate(turn: Vec3, spin: Vec3) -> Vec3 {
+    let square = turn.norm_squared();
+    let factor = if square < 1e-6 {
+        1.0 / 12.0 + square / 720.0
+    } else {
+        let angle = square.sqrt();
+        let (s, c) = angle.sin_cos();
+        1.0 / square - (1.0 + c) / (2.0 * angle * s.max(1e-12))
+    };
+    let cross = turn.cross(spin);
+    spin - cross * 0.5 + turn.cross(cross) * factor
+}

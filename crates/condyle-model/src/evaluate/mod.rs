@@ -1,0 +1,32 @@
+//! From coordinates to transforms.
+//!
+//! [`Program::compile`] flattens a model once: components are sorted, constants folded, identities
+//! dropped, products of single-use components laid end to end. What remains are two kinds of
+//! instruction: scalar ones (`y = f(x)`), and *chains*, products of elementary steps
+//!
+//! ```text
+//! T_out = T_base · S₁ · S₂ · … · Sₙ,     Sᵢ ∈ {fixed, turn about an axis, slide along it, ball, law}
+//! ```
+//!
+//! A segment's world transform is a chain whose base is its parent's. [`Program::evaluate`] runs
+//! them in order over any scalar; [`Program::evaluate_with_jacobian`] also records, at each step,
+//! the world generator of what moves there. If step i turns about a by θ(q), coordinate q
+//! contributes ∂θ/∂q · (a, c × a) to every segment beyond it, with c the frame's origin; twists at
+//! the world's origin add, so a segment's derivative is a sum over its path, and most segments
+//! share their ancestors' numbers without a copy.
+//!
+//! In [`Mode::Posed`] coordinates are first moved into their limits, so every pose is legal; in
+//! [`Mode::Open`] they are taken as given, and a solver gets the limits as rows.
+
+mod chain;
+mod closure;
+mod compile;
+mod derivative_plan;
+mod jacobian;
+mod pose;
+mod program;
+
+pub use closure::ClosureRows;
+pub use jacobian::Jacobian;
+pub use pose::Pose;
+pub use program::{Mode, Program, SizeMismatch};

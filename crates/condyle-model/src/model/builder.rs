@@ -1,0 +1,300 @@
+//! Making a model step by step.
+
+use super::check::{self, Finding, Severity};
+use super::{
+    Closure, ComponentId, Coordinate, CoordinateId, CoordinateKind, JointSet, JointSetId, Marker,
+    Model, NamedComponent, Segment, SegmentId, UpAxis,
+};
+use crate::component::{
+    Ball, Combine, Component, ConstantCurvature, Ellipsoid, Map, Place, Product, Rotate, Source,
+    Translate,
+};
+use crate::limit::Range;
+use condyle_math::function::{Function, FunctionOfSeveral};
+use condyle_math::{Affine, Vec3};
+
+/// A model in the making.
+///
+/// Every method adds one thing and returns its position, to be used by the next; nothing is checked
+/// before [`ModelBuilder::build`], which reports everything that is wrong at once.
+#[derive(Clone, Debug)]
+pub struct ModelBuilder {
+    model: Model,
+}
+
+impl ModelBuilder {
+    /// An empty model with y up.
+    pub fn new(name: &str) -> Self {
+        Self {
+            model: Model {
+                name: name.to_owned(),
+                up: UpAxis::Y,
+                segments: vec![],
+                coordinates: vec![],
+                joint_sets: vec![],
+                components: vec![],
+                markers: vec![],
+                closures: vec![],
+                stored_offsets: vec![],
+                tangent_offsets: vec![],
+            },
+        }
+    }
+
+    /// Sets the axis of the world that points up.
+    pub fn up(&mut self, up: UpAxis) {
+        self.model.up = up;
+    }
+
+    /// A segment, welded to its parent (or to the world) at its own origin until told otherwise.
+    pub fn segment(&mut self, name: &str, parent: Option<SegmentId>) -> SegmentId {
+        self.model.segments.push(Segment {
+            name: name.to_owned(),
+            parent,
+            joint_in_parent: Affine::IDENTITY,
+            joint_in_segment: Affine::IDENTITY,
+            motion: None,
+            joint_set: None,
+        });
+        SegmentId(self.model.segments.len() as u32 - 1)
+    }
+
+    /// Hangs a segment on another parent, which may have been made after it.
+    pub fn set_parent(&mut self, segment: SegmentId, parent: Option<SegmentId>) {
+        self.model.segments[segment.index()].parent = parent;
+    }
+
+    /// Puts the segment's joint, and its own origin, at a point of its parent (metres).
+    pub fn place_joint(&mut self, segment: SegmentId, point_in_parent: Vec3) {
+        self.place_joint_frames(
+            segment,
+            Affine::from_translation(point_in_parent),
+            Affine::IDENTITY,
+        );
+    }
+
+    /// Sets both ends of the segment's joint: the frame in its parent and the frame in itself.
+    pub fn place_joint_frames(
+        &mut self,
+        segment: SegmentId,
+        joint_in_parent: Affine,
+        joint_in_segment: Affine,
+    ) {
+        let segment = &mut self.model.segments[segment.index()];
+        segment.joint_in_parent = joint_in_parent;
+        segment.joint_in_segment = joint_in_segment;
+    }
+
+    /// An empty joint set.
+    pub fn joint_set(&mut self, name: &str) -> JointSetId {
+        self.model.joint_sets.push(JointSet { name: name.to_owned() });
+        JointSetId(self.model.joint_sets.len() as u32 - 1)
+    }
+
+    /// A coordinate without limits; an orientation starts at the identity, others at 0.
+    pub fn coordinate(
+        &mut self,
+        set: JointSetId,
+        name: &str,
+        kind: CoordinateKind,
+    ) -> CoordinateId {
+        let default =
+            if kind == CoordinateKind::Orientation { [0.0, 0.0, 0.0, 1.0] } else { [0.0; 4] };
+        self.model.coordinates.push(Coordinate {
+            name: name.to_owned(),
+            joint_set: set,
+            kind,
+            default,
+            range: Range::FREE,
+            locked: false,
+            follows: None,
+            source: None,
+        });
+        CoordinateId(self.model.coordinates.len() as u32 - 1)
+    }
+
+    /// Everything about a coordinate, to be changed in place.
+    pub fn coordinate_mut(&mut self, id: CoordinateId) -> &mut Coordinate {
+        &mut self.model.coordinates[id.index()]
+    }
+
+    /// The coordinates made so far.
+    pub fn coordinates(&self) -> &[Coordinate] {
+        &self.model.coordinates
+    }
+
+    /// A component; its first output is returned.
+    pub fn component(&mut self, set: JointSetId, name: &str, component: Component) -> Source {
+        self.model.components.push(NamedComponent {
+            name: name.to_owned(),
+            joint_set: set,
+            component,
+        });
+        Source::Output(ComponentId(self.model.components.len() as u32 - 1), 0)
+    }
+
+    /// A function of a scalar.
+    pub fn map(
+        &mut self,
+        set: JointSetId,
+        name: &str,
+        input: impl Into<Source>,
+        function: Function,
+    ) -> Source {
+        let map = Map { input: input.into(), functions: vec![function] };
+        self.component(set, name, Component::Map(map))
+    }
+
+    /// A function of several scalars.
+    pub fn combine(
+        &mut self,
+        set: JointSetId,
+        name: &str,
+        inputs: Vec<Source>,
+        function: FunctionOfSeveral,
+    ) -> Source {
+        self.component(set, name, Component::Combine(Combine { inputs, function }))
+    }
+
+    /// A rotation about a fixed axis.
+    pub fn rotate(
+        &mut self,
+        set: JointSetId,
+        name: &str,
+        angle: impl Into<Source>,
+        axis: Vec3,
+    ) -> Source {
+        self.component(set, name, Component::Rotate(Rotate { angle: angle.into(), axis }))
+    }
+
+    /// A translation along a fixed axis.
+    pub fn translate(
+        &mut self,
+        set: JointSetId,
+        name: &str,
+        distance: impl Into<Source>,
+        axis: Vec3,
+    ) -> Source {
+        let translate = Translate { distance: distance.into(), axis };
+        self.component(set, name, Component::Translate(translate))
+    }
+
+    /// A rotation by an orientation coordinate.
+    pub fn ball(&mut self, set: JointSetId, name: &str, orientation: CoordinateId) -> Source {
+        let ball = Ball { orientation: orientation.into() };
+        self.component(set, name, Component::Ball(ball))
+    }
+
+    /// A fixed transform.
+    pub fn place(&mut self, set: JointSetId, name: &str, child_in_parent: Affine) -> Source {
+        self.component(set, name, Component::Place(Place { child_in_parent }))
+    }
+
+    /// A frame that glides on an ellipsoid with these half axes (metres).
+    pub fn ellipsoid(
+        &mut self,
+        set: JointSetId,
+        name: &str,
+        angles: [Source; 3],
+        radii: Vec3,
+    ) -> Source {
+        self.component(set, name, Component::Ellipsoid(Ellipsoid { angles, radii }))
+    }
+
+    /// The end of a bent column.
+    pub fn constant_curvature(
+        &mut self,
+        set: JointSetId,
+        name: &str,
+        column: ConstantCurvature,
+    ) -> Source {
+        self.component(set, name, Component::ConstantCurvature(column))
+    }
+
+    /// A product of transforms, the factor nearest to the parent first.
+    pub fn product(&mut self, set: JointSetId, name: &str, factors: Vec<Source>) -> Source {
+        self.component(set, name, Component::Product(Product { factors }))
+    }
+
+    /// Makes a coordinate follow a scalar instead of what is asked for it.
+    pub fn follow(&mut self, coordinate: CoordinateId, leader: Source) {
+        self.model.coordinates[coordinate.index()].follows = Some(leader);
+    }
+
+    /// Lets a transform of a joint set move a segment.
+    pub fn output(&mut self, set: JointSetId, segment: SegmentId, motion: Source) {
+        let segment = &mut self.model.segments[segment.index()];
+        segment.motion = Some(motion);
+        segment.joint_set = Some(set);
+    }
+
+    /// A joint set of one hinge that moves `segment`: its name, and that of its angle.
+    pub fn hinge(
+        &mut self,
+        name: &str,
+        segment: SegmentId,
+        coordinate: &str,
+        axis: Vec3,
+    ) -> (JointSetId, CoordinateId) {
+        let set = self.joint_set(name);
+        let angle = self.coordinate(set, coordinate, CoordinateKind::Rotation);
+        let turn = self.rotate(set, coordinate, angle, axis);
+        self.output(set, segment, turn);
+        (set, angle)
+    }
+
+    /// A joint set of one quaternion ball that moves `segment`.
+    pub fn ball_joint(&mut self, name: &str, segment: SegmentId) -> (JointSetId, CoordinateId) {
+        let set = self.joint_set(name);
+        let orientation = self.coordinate(set, "orientation", CoordinateKind::Orientation);
+        let turn = self.ball(set, "ball", orientation);
+        self.output(set, segment, turn);
+        (set, orientation)
+    }
+
+    /// A marker at a point of a segment (metres).
+    pub fn marker(&mut self, name: &str, segment: Option<SegmentId>, point: Vec3) {
+        self.model.markers.push(Marker { name: name.to_owned(), segment, point });
+    }
+
+    /// A loop that tracking closes.
+    pub fn closure(&mut self, closure: Closure) {
+        self.model.closures.push(closure);
+    }
+
+    /// Checks everything and freezes the model.
+    ///
+    /// # Errors
+    /// All findings, at least one of which is an error.
+    pub fn build(self) -> Result<Model, Vec<Finding>> {
+        self.build_with_findings().map(|(model, _)| model)
+    }
+
+    /// As [`ModelBuilder::build`], with the findings that are no errors beside the model.
+    ///
+    /// # Errors
+    /// All findings, at least one of which is an error.
+    pub fn build_with_findings(mut self) -> Result<(Model, Vec<Finding>), Vec<Finding>> {
+        let findings = check::check(&self.model);
+        if findings.iter().any(|f| f.severity == Severity::Error) {
+            return Err(findings);
+        }
+        for named in &mut self.model.components {
+            match &mut named.component {
+                Component::Rotate(c) => c.axis = c.axis.normalized(),
+                Component::Translate(c) => c.axis = c.axis.normalized(),
+                _ => {}
+            }
+        }
+        let (mut stored, mut tangent) = (0u32, 0u32);
+        self.model.stored_offsets.push(0);
+        self.model.tangent_offsets.push(0);
+        for coordinate in &self.model.coordinates {
+            stored += coordinate.kind.stored() as u32;
+            tangent += coordinate.kind.tangent() as u32;
+            self.model.stored_offsets.push(stored);
+            self.model.tangent_offsets.push(tangent);
+        }
+        Ok((self.model, findings))
+    }
+}

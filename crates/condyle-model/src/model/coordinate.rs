@@ -1,0 +1,61 @@
+//! Coordinates: the few numbers that a person gives.
+
+use super::JointSetId;
+use crate::component::Source;
+use crate::limit::Range;
+
+/// What a coordinate measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CoordinateKind {
+    /// An angle in radians.
+    Rotation,
+    /// A distance in metres.
+    Translation,
+    /// Neither: a weight, or an angle mixed with a distance.
+    Other,
+    /// A rotation in space: four stored numbers x, y, z, w that move in three.
+    Orientation,
+}
+
+impl CoordinateKind {
+    /// How many numbers are stored.
+    pub fn stored(self) -> usize {
+        if self == Self::Orientation { 4 } else { 1 }
+    }
+
+    /// In how many independent directions it moves.
+    pub fn tangent(self) -> usize {
+        if self == Self::Orientation { 3 } else { 1 }
+    }
+
+    /// The word for it in tables and files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rotation => "rotation",
+            Self::Translation => "translation",
+            Self::Other => "other",
+            Self::Orientation => "orientation",
+        }
+    }
+}
+
+/// One meaningful degree of freedom, such as the flexion of a knee.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coordinate {
+    /// The coordinate's name; unique in its joint set.
+    pub name: String,
+    /// The joint set it belongs to.
+    pub joint_set: JointSetId,
+    /// What it measures.
+    pub kind: CoordinateKind,
+    /// Its value when nothing is said: one number, or x, y, z, w.
+    pub default: [f64; 4],
+    /// Its range, of a kind that is one number.
+    pub range: Range,
+    /// Whether tracking keeps it at its default.
+    pub locked: bool,
+    /// What determines it, if it is coupled to others; requests for it are then ignored.
+    pub follows: Option<Source>,
+    /// Where its numbers come from.
+    pub source: Option<String>,
+}

@@ -1,0 +1,297 @@
+//! What a character is made of: segments, coordinates, joint sets, markers, closures.
+//!
+//! A [`Model`] is constant: it is made by a [`ModelBuilder`], which checks everything once, and is
+//! then shared. Items refer to each other by typed positions ([`SegmentId`] and its kin); names are
+//! for people and files.
+
+mod builder;
+mod check;
+mod closure;
+mod coordinate;
+mod segment;
+
+pub use builder::ModelBuilder;
+pub use check::{Finding, Severity};
+pub use closure::{Closure, Condition};
+pub use coordinate::{Coordinate, CoordinateKind};
+pub use segment::Segment;
+
+pub(crate) use check::{Node, dependency_order};
+
+use crate::component::Component;
+use condyle_math::Vec3;
+use std::fmt;
+
+macro_rules! position {
+    ($(#[$doc:meta])* $name:ident) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub struct $name(pub(crate) u32);
+
+        impl $name {
+            /// The position, counted from 0 in the order of the model.
+            #[inline(always)]
+            pub fn index(self) -> usize {
+                self.0 as usize
+            }
+        }
+    };
+}
+
+position!(
+    /// The position of a segment in its model.
+    SegmentId
+);
+position!(
+    /// The position of a coordinate in its model.
+    CoordinateId
+);
+position!(
+    /// The position of a joint set in its model.
+    JointSetId
+);
+position!(
+    /// The position of a component in its model.
+    ComponentId
+);
+
+/// The axis of the world that points up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum UpAxis {
+    /// The second axis, as in OpenSim and glTF.
+    #[default]
+    Y,
+    /// The third axis, as in most laboratories and in Blender.
+    Z,
+}
+
+/// A few coordinates and the network of components that makes motions of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointSet {
+    /// Its name, unique in the model.
+    pub name: String,
+}
+
+/// A point fixed in a segment that a recording also knows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Marker {
+    /// Its name.
+    pub name: String,
+    /// The segment it is fixed in; `None` for the world.
+    pub segment: Option<SegmentId>,
+    /// Its place in the segment, in metres.
+    pub point: Vec3,
+}
+
+/// A component with its name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedComponent {
+    /// Its name, unique in its joint set.
+    pub name: String,
+    /// The joint set it belongs to.
+    pub joint_set: JointSetId,
+    /// What it does.
+    pub component: Component,
+}
+
+/// A character, checked and constant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Model {
+    pub(crate) name: String,
+    pub(crate) up: UpAxis,
+    pub(crate) segments: Vec<Segment>,
+    pub(crate) coordinates: Vec<Coordinate>,
+    pub(crate) joint_sets: Vec<JointSet>,
+    pub(crate) components: Vec<NamedComponent>,
+    pub(crate) markers: Vec<Marker>,
+    pub(crate) closures: Vec<Closure>,
+    /// Where each coordinate's stored numbers begin; one more for the end.
+    pub(crate) stored_offsets: Vec<u32>,
+    /// Where each coordinate's directions begin; one more for the end.
+    pub(crate) tangent_offsets: Vec<u32>,
+}
+
+impl Model {
+    /// The model's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The axis of the world that points up.
+    pub fn up(&self) -> UpAxis {
+        self.up
+    }
+
+    /// All segments, in the order in which they were made.
+    pub fn segments(&self) -> &[Segment] {
+        &self.segments
+    }
+
+    /// All coordinates.
+    pub fn coordinates(&self) -> &[Coordinate] {
+        &self.coordinates
+    }
+
+    /// All joint sets.
+    pub fn joint_sets(&self) -> &[JointSet] {
+        &self.joint_sets
+    }
+
+    /// All components.
+    pub fn components(&self) -> &[NamedComponent] {
+        &self.components
+    }
+
+    /// All markers.
+    pub fn markers(&self) -> &[Marker] {
+        &self.markers
+    }
+
+    /// All closures.
+    pub fn closures(&self) -> &[Closure] {
+        &self.closures
+    }
+
+    /// The positions of all coordinates.
+    pub fn coordinate_ids(&self) -> impl ExactSizeIterator<Item = CoordinateId> + use<> {
+        (0..self.coordinates.len() as u32).map(CoordinateId)
+    }
+
+    /// The positions of all segments.
+    pub fn segment_ids(&self) -> impl ExactSizeIterator<Item = SegmentId> + use<> {
+        (0..self.segments.len() as u32).map(SegmentId)
+    }
+
+    /// A coordinate.
+    pub fn coordinate(&self, id: CoordinateId) -> &Coordinate {
+        &self.coordinates[id.index()]
+    }
+
+    /// A segment.
+    pub fn segment(&self, id: SegmentId) -> &Segment {
+        &self.segments[id.index()]
+    }
+
+    /// How many numbers all coordinates store together.
+    pub fn stored_len(&self) -> usize {
+        self.stored_offsets.last().map_or(0, |&n| n as usize)
+    }
+
+    /// In how many directions all coordinates move together.
+    pub fn tangent_len(&self) -> usize {
+        self.tangent_offsets.last().map_or(0, |&n| n as usize)
+    }
+
+    /// Where a coordinate's numbers stand among all stored ones.
+    pub fn stored_range(&self, id: CoordinateId) -> std::ops::Range<usize> {
+        self.stored_offsets[id.index()] as usize..self.stored_offsets[id.index() + 1] as usize
+    }
+
+    /// Where a coordinate's directions stand among all.
+    pub fn tangent_range(&self, id: CoordinateId) -> std::ops::Range<usize> {
+        self.tangent_offsets[id.index()] as usize..self.tangent_offsets[id.index() + 1] as usize
+    }
+
+    /// The stored numbers of all coordinates at their defaults.
+    pub fn defaults(&self) -> Vec<f64> {
+        self.coordinates.iter().flat_map(|c| c.default[..c.kind.stored()].iter().copied()).collect()
+    }
+
+    /// The key of a coordinate in files: its bare name where that is unique, else `joint/name`.
+    pub fn coordinate_key(&self, id: CoordinateId) -> String {
+        let coordinate = self.coordinate(id);
+        let twins = self.coordinates.iter().filter(|c| c.name == coordinate.name).count();
+        if twins == 1 {
+            coordinate.name.clone()
+        } else {
+            format!("{}/{}", self.joint_sets[coordinate.joint_set.index()].name, coordinate.name)
+        }
+    }
+
+    /// The segment of that name.
+    ///
+    /// # Errors
+    /// [`NameError`], with the nearest name that exists.
+    pub fn find_segment(&self, name: &str) -> Result<SegmentId, NameError> {
+        match self.segments.iter().position(|s| s.name == name) {
+            Some(index) => Ok(SegmentId(index as u32)),
+            None => Err(NameError::unknown(
+                "segment",
+                name,
+                self.segments.iter().map(|s| s.name.clone()).collect(),
+            )),
+        }
+    }
+
+    /// The coordinate with that key: a bare name where it is unique, or `joint/name`.
+    ///
+    /// # Errors
+    /// [`NameError`], with the nearest key that exists or with all that the name could mean.
+    pub fn find_coordinate(&self, key: &str) -> Result<CoordinateId, NameError> {
+        let full =
+            |c: &Coordinate| format!("{}/{}", self.joint_sets[c.joint_set.index()].name, c.name);
+        let hits: Vec<CoordinateId> = self
+            .coordinate_ids()
+            .filter(|&id| self.coordinate(id).name == key || full(self.coordinate(id)) == key)
+            .collect();
+        match hits[..] {
+            [id] => Ok(id),
+            [] => Err(NameError::unknown(
+                "coordinate",
+                key,
+                self.coordinate_ids().map(|id| self.coordinate_key(id)).collect(),
+            )),
+            _ => Err(NameError {
+                what: "coordinate",
+                name: key.to_owned(),
+                nearest: None,
+                candidates: hits.iter().map(|&id| full(self.coordinate(id))).collect(),
+            }),
+        }
+    }
+}
+
+/// A name that is not in the model, or that means several things.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NameError {
+    /// What was looked for.
+    pub what: &'static str,
+    /// The name that was asked for.
+    pub name: String,
+    /// The most similar name that exists, if one is near.
+    pub nearest: Option<String>,
+    /// What the name could mean, where it is ambiguous.
+    pub candidates: Vec<String>,
+}
+
+impl NameError {
+    fn unknown(what: &'static str, name: &str, existing: Vec<String>) -> Self {
+        let nearest = existing
+            .into_iter()
+            .map(|candidate| (strsim::jaro_winkler(name, &candidate), candidate))
+            .filter(|(similarity, _)| *similarity > 0.75)
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, candidate)| candidate);
+        Self { what, name: name.to_owned(), nearest, candidates: vec![] }
+    }
+}
+
+impl fmt::Display for NameError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.candidates.is_empty() {
+            let list = self.candidates.join("`, `");
+            return write!(
+                f,
+                "the {} name `{}` is ambiguous: it could be `{list}`",
+                self.what, self.name
+            );
+        }
+        write!(f, "unknown {} `{}`", self.what, self.name)?;
+        match &self.nearest {
+            Some(nearest) => write!(f, "; did you mean `{nearest}`?"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for NameError {}

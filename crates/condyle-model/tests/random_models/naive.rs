@@ -1,0 +1,84 @@
+//! The slow and obvious twin of a program: every value is computed afresh by walking the model.
+
+use condyle_math::{Affine, Mat3, Quat, Vec3};
+use condyle_model::component::{Component, Law};
+use condyle_model::{CoordinateId, Mode, Model, SegmentId, Source};
+
+pub(crate) struct Evaluator<'a> {
+    model: &'a Model,
+    stored: &'a [f64],
+    mode: Mode,
+}
+
+impl<'a> Evaluator<'a> {
+    pub(crate) fn new(model: &'a Model, stored: &'a [f64], mode: Mode) -> Self {
+        Self { model, stored, mode }
+    }
+
+    pub(crate) fn coordinate(&self, id: CoordinateId) -> Vec<f64> {
+        let coordinate = self.model.coordinate(id);
+        if let Some(leader) = coordinate.follows {
+            return vec![self.scalar(leader)];
+        }
+        let mut values = self.stored[self.model.stored_range(id)].to_vec();
+        if self.mode == Mode::Posed && values.len() == 1 {
+            values[0] = coordinate.range.nearest(values[0]);
+        }
+        values
+    }
+
+    fn scalar(&self, source: Source) -> f64 {
+        match source {
+            Source::Coordinate(id) => self.coordinate(id)[0],
+            Source::Output(id, output) => match &self.model.components()[id.index()].component {
+                Component::Map(map) => {
+                    let x = self.scalar(map.input);
+                    map.functions[output as usize].value_and_slope(x).0
+                }
+                Component::Combine(combine) => {
+                    let x: Vec<f64> = combine.inputs.iter().map(|&s| self.scalar(s)).collect();
+                    combine.function.apply(&x)
+                }
+                other => panic!("{} is no scalar", other.kind()),
+            },
+        }
+    }
+
+    fn transform(&self, source: Source) -> Affine {
+        let Source::Output(id, _) = source else { panic!("a coordinate is no transform") };
+        match &self.model.components()[id.index()].component {
+            Component::Rotate(c) => {
+                let angle = self.scalar(c.angle);
+                Affine::from_rotation(Quat::from_axis_angle(c.axis, angle).to_mat3())
+            }
+            Component::Translate(c) => Affine::from_translation(c.axis * self.scalar(c.distance)),
+            Component::Ball(c) => {
+                let Source::Coordinate(id) = c.orientation else {
+                    panic!("a ball takes a coordinate")
+                };
+                let q: [f64; 4] = self.coordinate(id).try_into().unwrap();
+                Affine::from_rotation(Quat::from(q).normalized().to_mat3())
+            }
+            Component::Place(c) => c.child_in_parent,
+            Component::Product(c) => {
+                c.factors.iter().fold(Affine::IDENTITY, |t, &f| t * self.transform(f))
+            }
+            Component::Ellipsoid(c) => {
+                let [a, b, g] = c.angles.map(|s| self.scalar(s));
+                let r = Mat3::rotation_x(a) * Mat3::rotation_y(b) * Mat3::rotation_z(g);
+                let n = r * Vec3::Z;
+                let [rx, ry, rz] = c.radii.to_array();
+                Affine::new(r, Vec3::new(rx * n.x, ry * n.y, rz * n.z))
+            }
+            Component::ConstantCurvature(c) => c.transform(&c.angles.map(|s| self.scalar(s))),
+            other => panic!("{} is no transform", other.kind()),
+        }
+    }
+
+    pub(crate) fn segment(&self, id: SegmentId) -> Affine {
+        let segment = self.model.segment(id);
+        let parent = segment.parent.map_or(Affine::IDENTITY, |p| self.segment(p));
+        let motion = segment.motion.map_or(Affine::IDENTITY, |m| self.transform(m));
+        parent * segment.joint_in_parent * motion * segment.joint_in_segment.rigid_inverse()
+    }
+}
