@@ -1,1 +1,31 @@
 //! Bytes to values and back: marker recordings, motions, models, animated scenes.
+//!
+//! Every reader takes text or bytes, never a path, and answers with a [`Read`]: the value and the
+//! warnings about it, or with an [`Error`] that says what is wrong, where, and what would be
+//! right. Inside, lengths are metres; a recording in millimetres is converted at the border. No
+//! input makes a reader panic, recurse, or allocate more than a small multiple of its size.
+//!
+//! | format | read | write |
+//! | --- | --- | --- |
+//! | TRC marker recordings | [`trc::read`] | [`trc::write`] |
+//! | STO and MOT motions | [`sto::read`] | [`sto::write`] |
+//! | CSV tables | [`csv::read`] | [`csv::write`] |
+//! | OpenSim inverse kinematics setups | [`opensim::setup`] | |
+//! | GLB animated scenes | | [`glb::write`] |
+//! | XML, for readers of models | [`XmlDocument`] | |
+
+pub mod csv;
+mod diagnostic;
+pub mod glb;
+pub mod opensim;
+mod recording;
+pub mod sto;
+mod table;
+pub mod text;
+pub mod trc;
+pub mod xml;
+
+pub use diagnostic::{Diagnostic, Error, Place, Read, nearest};
+pub use recording::{Gap, LengthUnit, Recording};
+pub use table::{AngleUnit, Table, coordinate_name};
+pub use xml::{Element, XmlDocument};

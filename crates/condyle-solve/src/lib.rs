@@ -13,7 +13,7 @@
 //!
 //! [`quadratic`] solves it thousands of times a second: no allocation after set-up, warm start from
 //! the active set of the last call, multipliers for every constraint, and a status that says what
-//! happened. [`cholesky`] is the factorisation underneath.
+//! happened. [`cholesky`] is the factorisation underneath, [`least_squares`] the loop around it.
 //!
 //! The answer is the unique point with multipliers `z` (bounds), `y` (equalities), `w ≥ 0`
 //! (inequalities) such that `H d + g = z + Cᵀ y + Gᵀ w`, where `z_i ≥ 0` at a lower bound, `z_i ≤ 0`
@@ -33,4 +33,5 @@
 //! ```
 
 pub mod cholesky;
+pub mod least_squares;
 pub mod quadratic;

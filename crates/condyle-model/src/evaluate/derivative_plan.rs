@@ -47,6 +47,8 @@ pub(super) struct DerivativePlan {
     /// For each transform register its (direction, twist) pairs, sorted by direction.
     entries: Vec<(u32, u32)>,
     entry_offsets: Vec<u32>,
+    /// For each stored number its (direction, derivative slot) pairs.
+    coordinate_entries: Vec<Vec<(u32, u32)>>,
 }
 
 impl DerivativePlan {
@@ -55,6 +57,11 @@ impl DerivativePlan {
     pub(super) fn segment_entries(&self, register: usize) -> &[(u32, u32)] {
         let [from, to] = [register, register + 1].map(|i| self.entry_offsets[i] as usize);
         &self.entries[from..to]
+    }
+
+    /// The directions that move a stored number, with the slots of its derivatives.
+    pub(super) fn coordinate_entries(&self, register: usize) -> &[(u32, u32)] {
+        &self.coordinate_entries[register]
     }
 }
 
@@ -118,6 +125,7 @@ pub(super) fn plan(
             }
         }
     }
+    plan.coordinate_entries = scalars[..program.stored].to_vec();
     plan.entry_offsets.push(0);
     for list in transforms {
         plan.entries.extend(list);

@@ -33,6 +33,12 @@ impl Jacobian {
         self.twists[number as usize]
     }
 
+    /// The derivative in a slot, as [`Program::coordinate_directions`] gives it.
+    #[inline(always)]
+    pub fn derivative(&self, slot: u32) -> f64 {
+        self.derivatives[slot as usize]
+    }
+
     /// Calls `visit` with each direction that moves a point (in the world, metres) fixed in a
     /// segment, and the point's velocity per unit of it.
     #[inline]

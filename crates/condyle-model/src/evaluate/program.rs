@@ -4,7 +4,7 @@ use super::chain::{Silent, run_chain};
 use super::derivative_plan::DerivativePlan;
 use super::pose::Pose;
 use crate::component::{ConstantCurvature, Ellipsoid, Law, MOST_COMBINED};
-use crate::model::{Model, SegmentId};
+use crate::model::{CoordinateId, Model, SegmentId};
 use condyle_math::function::{Function, FunctionOfSeveral};
 use condyle_math::{Affine, Scalar, Vec3};
 use std::fmt;
@@ -167,6 +167,14 @@ impl Program {
     /// [`Jacobian`]: super::Jacobian
     pub fn segment_directions(&self, segment: SegmentId) -> &[(u32, u32)] {
         self.plan.segment_entries(segment.index())
+    }
+
+    /// Directions that move the effective value of a coordinate of one number, each with the slot
+    /// of its derivative in a [`Jacobian`]: itself, or the leaders of one that follows.
+    ///
+    /// [`Jacobian`]: super::Jacobian
+    pub fn coordinate_directions(&self, model: &Model, coordinate: CoordinateId) -> &[(u32, u32)] {
+        self.plan.coordinate_entries(model.stored_range(coordinate).start)
     }
 
     /// Computes the transforms of all segments at the requested coordinates.

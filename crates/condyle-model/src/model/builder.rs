@@ -123,6 +123,11 @@ impl ModelBuilder {
         &self.model.coordinates
     }
 
+    /// The position of the coordinate that was made as number `index`, counted from 0.
+    pub fn coordinate_at(&self, index: usize) -> Option<CoordinateId> {
+        (index < self.model.coordinates.len()).then_some(CoordinateId(index as u32))
+    }
+
     /// A component; its first output is returned.
     pub fn component(&mut self, set: JointSetId, name: &str, component: Component) -> Source {
         self.model.components.push(NamedComponent {

@@ -19,7 +19,7 @@ pub use segment::Segment;
 pub(crate) use check::{Node, dependency_order};
 
 use crate::component::Component;
-use condyle_math::Vec3;
+use condyle_math::{Quat, Vec3};
 use std::fmt;
 
 macro_rules! position {
@@ -195,6 +195,26 @@ impl Model {
     /// The stored numbers of all coordinates at their defaults.
     pub fn defaults(&self) -> Vec<f64> {
         self.coordinates.iter().flat_map(|c| c.default[..c.kind.stored()].iter().copied()).collect()
+    }
+
+    /// Moves coordinates along their directions: q + d, or q·exp(d) for an orientation.
+    ///
+    /// `stored` and `moved` have [`Model::stored_len`] numbers, `step` [`Model::tangent_len`].
+    ///
+    /// # Panics
+    /// If a slice is too short.
+    pub fn retract(&self, stored: &[f64], step: &[f64], moved: &mut [f64]) {
+        for id in self.coordinate_ids() {
+            let (from, along) = (self.stored_range(id), self.tangent_range(id));
+            if from.len() == 1 {
+                moved[from.start] = stored[from.start] + step[along.start];
+                continue;
+            }
+            let q: [f64; 4] = std::array::from_fn(|i| stored[from.start + i]);
+            let turn: [f64; 3] = std::array::from_fn(|i| step[along.start + i]);
+            let turned = Quat::from(q) * Quat::exp(Vec3::from(turn));
+            moved[from].copy_from_slice(&turned.normalized().to_array());
+        }
     }
 
     /// The key of a coordinate in files: its bare name where that is unique, else `joint/name`.

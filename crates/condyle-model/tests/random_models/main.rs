@@ -12,24 +12,11 @@ fn difference(a: Affine, b: Affine) -> f64 {
     a.to_rows().iter().zip(b.to_rows()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// The stored numbers after a step in one direction: additive, or q·exp(δ) for an orientation.
+/// The stored numbers after a step in one direction.
 fn retract(model: &Model, stored: &[f64], direction: usize, step: f64) -> Vec<f64> {
-    let mut moved = stored.to_vec();
-    for id in model.coordinate_ids() {
-        let (s, t) = (model.stored_range(id), model.tangent_range(id));
-        if !t.contains(&direction) {
-            continue;
-        }
-        if s.len() == 1 {
-            moved[s.start] += step;
-        } else {
-            let mut delta = [0.0; 3];
-            delta[direction - t.start] = step;
-            let q: [f64; 4] = std::array::from_fn(|i| stored[s.start + i]);
-            let turned = condyle_math::Quat::from(q) * condyle_math::Quat::exp(Vec3::from(delta));
-            moved[s].copy_from_slice(&turned.to_array());
-        }
-    }
+    let (mut moved, mut along) = (stored.to_vec(), vec![0.0; model.tangent_len()]);
+    along[direction] = step;
+    model.retract(stored, &along, &mut moved);
     moved
 }
 

@@ -1,0 +1,14 @@
+//! `condyle convert`.
+
+use super::Outcome;
+use crate::failure::Failure;
+use clap::Args;
+
+#[derive(Debug, Args)]
+pub(crate) struct Convert {}
+
+impl Convert {
+    pub(crate) fn run(self) -> Result<Outcome, Failure> {
+        Ok(Outcome::Done)
+    }
+}

@@ -1,0 +1,155 @@
+//! `condyle fk`: world transforms.
+
+use super::Outcome;
+use crate::failure::{Failure, warn_about, warned};
+use crate::output;
+use clap::{Args, ValueEnum};
+use condyle::{CoordinateKind, Mode, Model, Motion, Pose, Program, open};
+use serde_json::{Map, Value, json};
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(crate) struct Fk {
+    /// The model.
+    model: PathBuf,
+    /// A JSON file with `{"coordinate": number}` in radians and metres, or a list of such poses.
+    #[arg(long, value_name = "P.json", conflicts_with = "motion")]
+    pose: Option<PathBuf>,
+    /// A motion whose columns are named after coordinates.
+    #[arg(long, value_name = "M")]
+    motion: Option<PathBuf>,
+    /// First move coordinates into their ranges.
+    #[arg(long, value_enum, default_value_t = Limits::Off)]
+    limits: Limits,
+    /// One JSON document on standard output (the default, and the only form).
+    #[arg(long)]
+    json: bool,
+    /// Where to write the answer; `-` is standard output.
+    #[arg(short, long, default_value = "-")]
+    output: PathBuf,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Limits {
+    Off,
+    On,
+}
+
+/// A value for a coupled coordinate that differs from what its leaders make by more than this is
+/// worth a warning.
+const COUPLING_TOLERANCE: f64 = 1e-9;
+
+impl Fk {
+    pub(crate) fn run(self) -> Result<Outcome, Failure> {
+        let model = warned(&self.model, open::model(&self.model)?);
+        let requests = self.requests(&model)?;
+        let program = Program::compile(&model);
+        let mut pose = Pose::new(&program);
+        let mode = if self.limits == Limits::On { Mode::Posed } else { Mode::Open };
+        let mut ignored = vec![0usize; model.coordinates().len()];
+        let mut frames = Vec::with_capacity(requests.motion.frames.len());
+        for (index, (time, stored)) in
+            requests.motion.times.iter().zip(&requests.motion.frames).enumerate()
+        {
+            program
+                .evaluate(stored, mode, &mut pose)
+                .map_err(|error| Failure::new(error.to_string()))?;
+            for id in model.coordinate_ids() {
+                let named = requests.named.get(index).is_none_or(|n| n[id.index()]);
+                if named && model.coordinate(id).follows.is_some() {
+                    let asked = stored[model.stored_range(id).start];
+                    let got = pose.coordinate(&model, id)[0];
+                    if (asked - got).abs() > COUPLING_TOLERANCE {
+                        ignored[id.index()] += 1;
+                    }
+                }
+            }
+            let segments: Map<String, Value> = model
+                .segment_ids()
+                .map(|id| (model.segment(id).name.clone(), json!(pose.segment(id).to_rows())))
+                .collect();
+            frames.push(json!({ "time": time, "segments": segments }));
+        }
+        for (id, count) in model.coordinate_ids().zip(ignored) {
+            if count > 0 {
+                eprintln!(
+                    "warning: `{}` follows other coordinates; the value given for it was ignored in \
+                     {count} of {} frames",
+                    model.coordinate_key(id),
+                    frames.len()
+                );
+            }
+        }
+        output::write(&self.output, format!("{}\n", json!({ "frames": frames })).as_bytes())?;
+        Ok(Outcome::Done)
+    }
+
+    fn requests(&self, model: &Model) -> Result<Requests, Failure> {
+        if let Some(path) = &self.motion {
+            let table = warned(path, open::table(path)?);
+            let (motion, warnings) = Motion::from_table(model, &table);
+            warn_about(path, &warnings);
+            return Ok(Requests { motion, named: vec![] });
+        }
+        let Some(path) = &self.pose else {
+            let motion = Motion { times: vec![0.0], frames: vec![model.defaults()] };
+            return Ok(Requests { motion, named: vec![vec![false; model.coordinates().len()]] });
+        };
+        let text = std::fs::read_to_string(path)
+            .map_err(|error| Failure::new(format!("{}: {error}", path.display())))?;
+        let value: Value = serde_json::from_str(&text)
+            .map_err(|error| Failure::new(format!("{}: {error}", path.display())))?;
+        let poses = match value {
+            Value::Array(poses) => poses,
+            one => vec![one],
+        };
+        let mut requests = Requests { motion: Motion::default(), named: vec![] };
+        for (index, pose) in poses.iter().enumerate() {
+            let (stored, named) = read_pose(model, pose).map_err(|message| {
+                let place = if poses.len() > 1 { format!("pose {index}: ") } else { String::new() };
+                Failure::new(format!("{}: {place}{message}", path.display()))
+            })?;
+            requests.motion.times.push(index as f64);
+            requests.motion.frames.push(stored);
+            requests.named.push(named);
+        }
+        Ok(requests)
+    }
+}
+
+/// What was asked for: the coordinates of each frame, and which of them were named.
+struct Requests {
+    motion: Motion,
+    /// Empty where every frame names every coordinate that it has.
+    named: Vec<Vec<bool>>,
+}
+
+/// The stored numbers of a pose, and which coordinates it names.
+fn read_pose(model: &Model, pose: &Value) -> Result<(Vec<f64>, Vec<bool>), String> {
+    let Value::Object(entries) = pose else {
+        return Err(r#"a pose is an object such as {"knee_angle_r": 0.5}"#.to_owned());
+    };
+    let mut stored = model.defaults();
+    let mut named = vec![false; model.coordinates().len()];
+    for (key, value) in entries {
+        let id = model.find_coordinate(key).map_err(|error| error.to_string())?;
+        let place = model.stored_range(id);
+        named[id.index()] = true;
+        if model.coordinate(id).kind == CoordinateKind::Orientation {
+            let numbers: Option<Vec<f64>> =
+                value.as_array().map(|list| list.iter().filter_map(Value::as_f64).collect());
+            match numbers {
+                Some(q) if q.len() == 4 && q.iter().any(|v| *v != 0.0) => {
+                    stored[place].copy_from_slice(&q);
+                }
+                _ => return Err(format!("`{key}` is an orientation: give [x, y, z, w]")),
+            }
+            continue;
+        }
+        match value.as_f64() {
+            Some(number) => stored[place.start] = number,
+            None => return Err(format!("`{key}` is {value}, not a number (radians or metres)")),
+        }
+    }
+    Ok((stored, named))
+}

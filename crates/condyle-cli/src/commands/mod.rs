@@ -1,0 +1,56 @@
+//! The commands, one file each.
+
+mod convert;
+mod demo;
+mod diff;
+mod fk;
+mod info;
+mod track;
+
+use crate::failure::Failure;
+use clap::{Parser, Subcommand};
+
+/// Anatomical joints: models, limits, and tracking of markers.
+#[derive(Debug, Parser)]
+#[command(name = "condyle", version, about, max_term_width = 100)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Say what is in a file: segments and coordinates, or markers, frames and gaps.
+    Info(info::Info),
+    /// Pose a model: world transforms of all segments.
+    Fk(fk::Fk),
+    /// Find the motion of a model that follows recorded markers.
+    Track(track::Track),
+    /// Write a file in another format.
+    Convert(convert::Convert),
+    /// Compare two motions, coordinate by coordinate.
+    Diff(diff::Diff),
+    /// The whole story on a recording made from a known motion.
+    Demo(demo::Demo),
+}
+
+/// How a command ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    /// All is well.
+    Done,
+    /// The input was read but what was asked does not hold.
+    DoesNotHold,
+}
+
+/// Carries a command out.
+pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
+    match arguments.command {
+        Command::Info(command) => command.run(),
+        Command::Fk(command) => command.run(),
+        Command::Track(command) => command.run(),
+        Command::Convert(command) => command.run(),
+        Command::Diff(command) => command.run(),
+        Command::Demo(command) => command.run(),
+    }
+}

@@ -1,0 +1,59 @@
+//! Why a command could not be carried out, and warnings on the way.
+
+use condyle::NameError;
+use condyle::formats::{Diagnostic, Error, Read};
+use condyle::open::{OpenError, located};
+use std::fmt;
+use std::path::Path;
+
+/// A message for a person; the process ends with exit code 2.
+#[derive(Debug)]
+pub(crate) struct Failure(String);
+
+impl Failure {
+    pub(crate) fn new(message: impl Into<String>) -> Self {
+        Self(message.into())
+    }
+
+    /// About a file.
+    pub(crate) fn about(path: &Path, error: &Error) -> Self {
+        Self(located(path, error.diagnostic()))
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl From<OpenError> for Failure {
+    fn from(error: OpenError) -> Self {
+        Self(error.to_string())
+    }
+}
+
+impl From<NameError> for Failure {
+    fn from(error: NameError) -> Self {
+        Self(error.to_string())
+    }
+}
+
+impl From<condyle::tracking::TrackError> for Failure {
+    fn from(error: condyle::tracking::TrackError) -> Self {
+        Self(error.to_string())
+    }
+}
+
+/// Prints warnings about a file and returns its value.
+pub(crate) fn warned<T>(path: &Path, read: Read<T>) -> T {
+    warn_about(path, &read.warnings);
+    read.value
+}
+
+/// Prints warnings about a file.
+pub(crate) fn warn_about(path: &Path, warnings: &[Diagnostic]) {
+    for warning in warnings {
+        eprintln!("warning: {}", located(path, warning));
+    }
+}

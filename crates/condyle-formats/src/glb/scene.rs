@@ -1,0 +1,98 @@
+//! What a scene is made of.
+
+use super::shape::Shape;
+
+/// The axis that points up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum UpAxis {
+    /// As in glTF and OpenSim.
+    #[default]
+    Y,
+    /// As in most laboratories.
+    Z,
+}
+
+/// Where a node is in its parent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LocalPose {
+    /// Metres.
+    pub translation: [f64; 3],
+    /// Unit quaternion x, y, z, w; it is normalised on writing, and its sign is free.
+    pub rotation: [f64; 4],
+}
+
+impl LocalPose {
+    /// Where the parent is.
+    pub const IDENTITY: Self = Self { translation: [0.0; 3], rotation: [0.0, 0.0, 0.0, 1.0] };
+}
+
+impl Default for LocalPose {
+    fn default() -> Self {
+        Self::IDENTITY
+    }
+}
+
+/// A named frame with its shapes.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SceneNode {
+    /// Shown in viewers.
+    pub name: String,
+    /// Index of an earlier node; none for a root.
+    pub parent: Option<usize>,
+    /// Where the node is while no track moves it.
+    pub rest: LocalPose,
+    /// What is drawn, in the frame of the node.
+    pub shapes: Vec<Shape>,
+}
+
+/// The way of one node.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Track {
+    /// Index of the node; no node has two tracks.
+    pub node: usize,
+    /// One for each of the scene's times.
+    pub poses: Vec<LocalPose>,
+}
+
+/// The way of a recorded marker, drawn as a small ball.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct MarkerTrack {
+    /// Shown in viewers.
+    pub name: String,
+    /// Metres in the figure's world, one for each of the scene's times; where it was not seen,
+    /// the ball stays where it was last.
+    pub positions: Vec<Option<[f64; 3]>>,
+}
+
+/// A figure, its motion and the markers it follows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// Names the scene, its root and its animation.
+    pub name: String,
+    /// The axis that points up in the figure's world.
+    pub up: UpAxis,
+    /// Parents before their children.
+    pub nodes: Vec<SceneNode>,
+    /// Seconds, rising; empty for a still figure.
+    pub times: Vec<f64>,
+    /// Nodes without one stay at rest.
+    pub tracks: Vec<Track>,
+    /// Drawn besides the figure.
+    pub markers: Vec<MarkerTrack>,
+    /// Radius of the markers' balls in metres; 8 mm by default.
+    pub marker_radius: f64,
+}
+
+impl Default for Scene {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            up: UpAxis::Y,
+            nodes: Vec::new(),
+            times: Vec::new(),
+            tracks: Vec::new(),
+            markers: Vec::new(),
+            marker_radius: 0.008,
+        }
+    }
+}

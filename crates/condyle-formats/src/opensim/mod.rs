@@ -1,0 +1,4 @@
+//! OpenSim's XML files.
+
+pub mod model;
+pub mod setup;

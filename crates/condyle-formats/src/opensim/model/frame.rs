@@ -1,0 +1,304 @@
+//! Frames by name and path, each resolved to a segment and a fixed transform in it.
+
+use super::{Base, triple};
+use crate::diagnostic::{Error, nearest};
+use crate::xml::Element;
+use condyle_math::{Affine, EulerOrder, Mat3, Vec3};
+use condyle_model::ModelBuilder;
+use std::collections::HashMap;
+
+/// Every frame and station of a model file.
+pub(super) struct Frames<'d> {
+    items: Vec<Item<'d>>,
+    by_path: HashMap<String, usize>,
+    by_name: HashMap<&'d str, Vec<usize>>,
+}
+
+struct Item<'d> {
+    element: Element<'d>,
+    path: String,
+    kind: Kind,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Base(Base),
+    /// A frame at a fixed place of another.
+    Offset,
+    /// A point of a frame.
+    Station,
+    /// A frame through four stations.
+    StationDefined,
+}
+
+/// The path of a component: the names on the way from the model, sets without a name by default.
+pub(super) fn path(element: Element<'_>) -> String {
+    let mut names: Vec<String> = vec![];
+    let mut here = Some(element);
+    while let Some(e) = here
+        && !e.is("Model")
+    {
+        match e.attribute("name").filter(|name| !name.is_empty()) {
+            Some(name) => names.push(name.to_owned()),
+            None if e.name().ends_with("Set") => names.push(e.name().to_lowercase()),
+            None if !matches!(e.name(), "objects" | "frames" | "components") => {
+                names.push(e.name().to_lowercase());
+            }
+            None => {}
+        }
+        here = e.parent();
+    }
+    names.reverse();
+    format!("/{}", names.join("/"))
+}
+
+/// An absolute path: `reference` as seen from the component at `context`.
+fn absolute(context: &str, reference: &str) -> String {
+    let mut parts: Vec<&str> =
+        if reference.starts_with('/') { vec![] } else { context.split('/').collect() };
+    for part in reference.split('/') {
+        match part {
+            "" | "." => {}
+            ".." => {
+                parts.pop();
+            }
+            name => parts.push(name),
+        }
+    }
+    format!("/{}", parts.into_iter().filter(|p| !p.is_empty()).collect::<Vec<_>>().join("/"))
+}
+
+impl<'d> Frames<'d> {
+    /// Collects all frames and makes a segment of each body.
+    pub(super) fn collect(model: Element<'d>, builder: &mut ModelBuilder) -> Result<Self, Error> {
+        let mut frames = Self { items: vec![], by_path: HashMap::new(), by_name: HashMap::new() };
+        let mut has_ground = false;
+        for element in model.descendants() {
+            let name = element.attribute("name").unwrap_or_default();
+            let kind = match element.name() {
+                "Ground" => Kind::Base(None),
+                "Body" if name == "ground" => Kind::Base(None),
+                "Body" => {
+                    let known = frames.by_name.get(name).into_iter().flatten();
+                    if known.clone().any(|&i| matches!(frames.items[i].kind, Kind::Base(Some(_)))) {
+                        return Err(element
+                            .error("osim/duplicate-body", format!("two bodies are named `{name}`"))
+                            .with_help("give each body a name of its own"));
+                    }
+                    Kind::Base(Some(builder.segment(name, None)))
+                }
+                "PhysicalOffsetFrame" | "OffsetFrame" => Kind::Offset,
+                "Station" => Kind::Station,
+                "StationDefinedFrame" => Kind::StationDefined,
+                _ => continue,
+            };
+            has_ground |= kind == Kind::Base(None);
+            frames.add(element, name, path(element), kind);
+        }
+        if !has_ground {
+            frames.add(model, "ground", "/ground".to_owned(), Kind::Base(None));
+        }
+        Ok(frames)
+    }
+
+    fn add(&mut self, element: Element<'d>, name: &'d str, path: String, kind: Kind) {
+        let index = self.items.len();
+        self.by_path.entry(path.clone()).or_insert(index);
+        if kind == Kind::Base(None) {
+            self.by_path.entry("/ground".to_owned()).or_insert(index);
+        }
+        let name = if kind == Kind::Base(None) { "ground" } else { name };
+        self.by_name.entry(name).or_default().push(index);
+        self.items.push(Item { element, path, kind });
+    }
+
+    /// All bodies: their element, name and segment.
+    pub(super) fn bodies(&self) -> impl Iterator<Item = (Element<'d>, Base)> + '_ {
+        self.items.iter().filter_map(|item| match item.kind {
+            Kind::Base(Some(id)) => Some((item.element, Some(id))),
+            _ => None,
+        })
+    }
+
+    /// The text of a socket in any of its historical spellings.
+    pub(super) fn socket(owner: Element<'d>, name: &str) -> Option<Element<'d>> {
+        [format!("socket_{name}"), format!("socket_{name}_connectee_name")]
+            .iter()
+            .find_map(|tag| owner.child(tag))
+            .or_else(|| owner.child("connectors").and_then(|c| find_connector(c, name)))
+            .filter(|e| !e.text().is_empty())
+    }
+
+    /// The frame that a part of the model is fixed in: a socket in version 4, a body name before.
+    pub(super) fn of_part(
+        &self,
+        owner: Element<'d>,
+        socket: &str,
+        body: &str,
+    ) -> Result<(Base, Affine), Error> {
+        match Self::socket(owner, socket).or_else(|| owner.child(body)) {
+            Some(reference) if !reference.text().is_empty() => self.resolve(owner, reference),
+            _ => Err(owner
+                .error(
+                    "osim/no-frame",
+                    format!("{} says of no frame that it is in it", owner.describe()),
+                )
+                .with_help(format!("add <socket_{socket}> with the path of a frame"))),
+        }
+    }
+
+    /// The frame that the text of `reference` names, as seen from the component `owner`.
+    pub(super) fn resolve(
+        &self,
+        owner: Element<'d>,
+        reference: Element<'d>,
+    ) -> Result<(Base, Affine), Error> {
+        let mut index = self.look_up(owner, reference)?;
+        let mut transform = Affine::IDENTITY;
+        for _ in 0..=self.items.len() {
+            let item = &self.items[index];
+            let element = item.element;
+            let local = match item.kind {
+                Kind::Base(base) => return Ok((base, transform)),
+                Kind::Offset => {
+                    let angles = triple(element, "orientation")?.to_array();
+                    let turn = EulerOrder::XYZ.to_mat3(angles);
+                    Affine::new(turn, triple(element, "translation")?)
+                }
+                Kind::Station => Affine::from_translation(triple(element, "location")?),
+                Kind::StationDefined => {
+                    let (base, frame) = self.station_defined(element)?;
+                    return Ok((base, frame * transform));
+                }
+            };
+            transform = local * transform;
+            let socket = if item.kind == Kind::Station { "parent_frame" } else { "parent" };
+            let parent = Self::socket(element, socket).ok_or_else(|| {
+                element.error(
+                    "osim/no-frame",
+                    format!("{} has no <socket_{socket}>", element.describe()),
+                )
+            })?;
+            index = self.look_up(element, parent)?;
+        }
+        Err(reference
+            .error("osim/frame-cycle", format!("frame `{}` is its own ancestor", reference.text()))
+            .with_help("let one of the frames on the way be fixed in a body"))
+    }
+
+    fn look_up(&self, owner: Element<'d>, reference: Element<'d>) -> Result<usize, Error> {
+        let text = reference.text();
+        if let Some(&index) = self.by_path.get(&absolute(&path(owner), text)) {
+            return Ok(index);
+        }
+        // Files of the 4.0 betas give bare names or paths through a differently named set.
+        let name = text.rsplit('/').next().unwrap_or(text);
+        let named = self.by_name.get(name).map(Vec::as_slice).unwrap_or_default();
+        let body = named.iter().find(|&&i| matches!(self.items[i].kind, Kind::Base(_)));
+        if let Some(&index) = body.or(named.first()) {
+            return Ok(index);
+        }
+        let known = self.items.iter().map(|item| item.path.as_str());
+        let names = self.by_name.keys().copied();
+        let help = match nearest(text, known.chain(names)) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "name a body or a frame of this model".to_owned(),
+        };
+        Err(reference
+            .error("osim/unknown-frame", format!("{} names no frame: `{text}`", owner.describe()))
+            .with_help(help))
+    }
+
+    /// A frame through stations: its first named axis runs from a to b, the second is normal to
+    /// the plane of a, b and c.
+    fn station_defined(&self, element: Element<'d>) -> Result<(Base, Affine), Error> {
+        let station = |socket: &str| -> Result<(Base, Vec3), Error> {
+            let reference = Self::socket(element, socket).ok_or_else(|| {
+                element.error(
+                    "osim/no-frame",
+                    format!("{} has no <socket_{socket}>", element.describe()),
+                )
+            })?;
+            let item = &self.items[self.look_up(element, reference)?];
+            if item.kind != Kind::Station {
+                return Err(reference.error(
+                    "osim/unknown-frame",
+                    format!("`{}` is not a station", reference.text()),
+                ));
+            }
+            let parent = Self::socket(item.element, "parent_frame").ok_or_else(|| {
+                item.element.error("osim/no-frame", "a station has no <socket_parent_frame>")
+            })?;
+            let (base, frame) = self.resolve_offset(item.element, parent)?;
+            Ok((base, frame * triple(item.element, "location")?))
+        };
+        let (base, a) = station("point_a")?;
+        let [(b_base, b), (c_base, c), (o_base, origin)] =
+            [station("point_b")?, station("point_c")?, station("origin_point")?];
+        if [b_base, c_base, o_base] != [base; 3] {
+            return Err(element.error(
+                "osim/station-frame",
+                format!("the stations of {} lie in different bodies", element.describe()),
+            ));
+        }
+        let along = (b - a).normalized();
+        let normal = (b - a).cross(c - a).normalized();
+        let axis = |tag: &str, default: &str| -> Result<(usize, f64), Error> {
+            let text = element.child_text(tag).unwrap_or(default);
+            let sign = if text.starts_with('-') { -1.0 } else { 1.0 };
+            match text.trim_start_matches(['+', '-']) {
+                "x" => Ok((0, sign)),
+                "y" => Ok((1, sign)),
+                "z" => Ok((2, sign)),
+                _ => Err(element.error("osim/station-frame", format!("`{text}` names no axis"))),
+            }
+        };
+        let (first, first_sign) = axis("ab_axis", "+x")?;
+        let (second, second_sign) = axis("ab_x_ac_axis", "+y")?;
+        if first == second || !(along.is_finite() && normal.is_finite()) {
+            return Err(element
+                .error("osim/station-frame", format!("{} has no definite axes", element.describe()))
+                .with_help(
+                    "give three stations that do not lie on one line, and two different axes",
+                ));
+        }
+        let mut columns = [Vec3::ZERO; 3];
+        columns[first] = along * first_sign;
+        columns[second] = normal * second_sign;
+        let third = 3 - first - second;
+        columns[third] = columns[(third + 1) % 3].cross(columns[(third + 2) % 3]);
+        let turn = Mat3::from_columns(columns[0], columns[1], columns[2]);
+        Ok((base, Affine::new(turn, origin)))
+    }
+
+    /// As [`Frames::resolve`] for the frame of a station, which must not go through another
+    /// frame of stations: that keeps the search finite.
+    fn resolve_offset(
+        &self,
+        owner: Element<'d>,
+        reference: Element<'d>,
+    ) -> Result<(Base, Affine), Error> {
+        let mut index = self.look_up(owner, reference)?;
+        let mut steps = 0;
+        while self.items[index].kind == Kind::Offset && steps <= self.items.len() {
+            let element = self.items[index].element;
+            let Some(parent) = Self::socket(element, "parent") else { break };
+            index = self.look_up(element, parent)?;
+            steps += 1;
+        }
+        if self.items[index].kind == Kind::StationDefined {
+            return Err(reference.error(
+                "osim/station-frame",
+                format!("a station of `{}` stands in another frame of stations", owner.describe()),
+            ));
+        }
+        self.resolve(owner, reference)
+    }
+}
+
+fn find_connector<'d>(connectors: Element<'d>, name: &str) -> Option<Element<'d>> {
+    connectors
+        .children()
+        .find(|c| c.attribute("name") == Some(name))
+        .and_then(|c| c.child("connectee_name"))
+}

@@ -1,0 +1,414 @@
+//! Joints as joint sets: each OpenSim joint type from the components that hand-written ones use.
+//!
+//! | joint | coordinates | motion |
+//! | --- | --- | --- |
+//! | Weld | - | nothing |
+//! | Pin | rz | Rz |
+//! | Slider | tx | Tx |
+//! | Universal | rx, ry | Rx·Ry |
+//! | Ball, Gimbal | rx, ry, rz | Rx·Ry·Rz, body-fixed |
+//! | Planar | rz, tx, ty | Tx·Ty·Rz |
+//! | Free | rx, ry, rz, tx, ty, tz | Tx·Ty·Tz·Rx·Ry·Rz |
+//! | Custom | any | T(a₄f₄ + a₅f₅ + a₆f₆)·R(a₁, f₁)·R(a₂, f₂)·R(a₃, f₃) |
+//! | Ellipsoid | rx, ry, rz | gliding on an ellipsoid |
+//! | Scapulothoracic | abduction, elevation, upward rotation, winging | Rz(90°)·ellipsoid·Rz(-90°)·hinge |
+//! | ConstantCurvature | rx, rz, ry | the end of an arc |
+
+use super::function::{self, AnyFunction};
+use super::joint_graph::PlacedJoint;
+use super::{Reader, triple};
+use crate::diagnostic::Error;
+use crate::xml::Element;
+use condyle_math::function::{Curve, Function};
+use condyle_math::{Affine, Mat3, Vec3};
+use condyle_model::component::ConstantCurvature;
+use condyle_model::{CoordinateId, CoordinateKind, JointSetId, Range, Source};
+use std::f64::consts::FRAC_PI_2;
+
+/// One elementary motion, which knows its inverse.
+enum Factor {
+    Turn(Source, Vec3),
+    Slide(Source, Vec3),
+    Fixed(Affine),
+    Law(Source),
+}
+
+/// Adds the joint set of one joint to the model.
+pub(super) fn build(reader: &mut Reader<'_, '_>, joint: &PlacedJoint<'_>) -> Result<(), Error> {
+    let set = reader.builder.joint_set(&joint.name);
+    let element = joint.element;
+    let coordinates = Coordinates::read(reader, set, element)?;
+    let factors = factors(reader, set, element, &coordinates)?;
+    if factors.is_empty() {
+        return Ok(());
+    }
+    let factors = if joint.backwards { backwards(element, factors)? } else { factors };
+    let mut sources = vec![];
+    for (index, factor) in factors.into_iter().enumerate() {
+        let name = format!("motion_{}", index + 1);
+        sources.push(match factor {
+            Factor::Turn(angle, axis) => reader.builder.rotate(set, &name, angle, axis),
+            Factor::Slide(distance, axis) => reader.builder.translate(set, &name, distance, axis),
+            Factor::Fixed(transform) => reader.builder.place(set, &name, transform),
+            Factor::Law(source) => source,
+        });
+    }
+    let whole = reader.builder.product(set, "motion", sources);
+    reader.builder.output(set, joint.moved, whole);
+    Ok(())
+}
+
+/// The inverse motion, for a joint that the file states from the far end.
+fn backwards(element: Element<'_>, factors: Vec<Factor>) -> Result<Vec<Factor>, Error> {
+    factors
+        .into_iter()
+        .rev()
+        .map(|factor| match factor {
+            Factor::Turn(angle, axis) => Ok(Factor::Turn(angle, -axis)),
+            Factor::Slide(distance, axis) => Ok(Factor::Slide(distance, -axis)),
+            Factor::Fixed(transform) => Ok(Factor::Fixed(transform.rigid_inverse())),
+            Factor::Law(_) => Err(element
+                .error(
+                    "osim/backwards",
+                    format!("{} is stated from child to parent", element.describe()),
+                )
+                .with_help("exchange its parent and child frames")),
+        })
+        .collect()
+}
+
+/// The coordinates of one joint, made in the model as the joint asks for them.
+struct Coordinates<'d> {
+    elements: Vec<Element<'d>>,
+    ids: Vec<(String, CoordinateId)>,
+}
+
+/// Coordinates of the joints that have a fixed number of them: suffix and kind.
+fn standard(joint: &str) -> &'static [(&'static str, CoordinateKind)] {
+    use CoordinateKind::{Rotation, Translation};
+    match joint {
+        "PinJoint" => &[("rz", Rotation)],
+        "SliderJoint" => &[("tx", Translation)],
+        "UniversalJoint" => &[("rx", Rotation), ("ry", Rotation)],
+        "BallJoint" | "GimbalJoint" | "EllipsoidJoint" => {
+            &[("rx", Rotation), ("ry", Rotation), ("rz", Rotation)]
+        }
+        "PlanarJoint" => &[("rz", Rotation), ("tx", Translation), ("ty", Translation)],
+        "FreeJoint" => &[
+            ("rx", Rotation),
+            ("ry", Rotation),
+            ("rz", Rotation),
+            ("tx", Translation),
+            ("ty", Translation),
+            ("tz", Translation),
+        ],
+        "ScapulothoracicJoint" => &[
+            ("abduction", Rotation),
+            ("elevation", Rotation),
+            ("upwardrotation", Rotation),
+            ("winging", Rotation),
+        ],
+        "ConstantCurvatureJoint" => &[("rx", Rotation), ("rz", Rotation), ("ry", Rotation)],
+        _ => &[],
+    }
+}
+
+impl<'d> Coordinates<'d> {
+    fn read(
+        reader: &mut Reader<'_, '_>,
+        set: JointSetId,
+        joint: Element<'d>,
+    ) -> Result<Self, Error> {
+        let list = joint.child("coordinates").or_else(|| {
+            let set = joint.child("CoordinateSet")?;
+            Some(set.child("objects").unwrap_or(set))
+        });
+        let elements: Vec<Element<'d>> =
+            list.into_iter().flat_map(|l| l.children_named("Coordinate")).collect();
+        let standard = standard(joint.name());
+        let count = if joint.is("CustomJoint") { elements.len() } else { standard.len() };
+        let mut coordinates = Self { elements, ids: vec![] };
+        for index in 0..count {
+            let element = coordinates.elements.get(index).copied();
+            let suffix = standard.get(index).map(|(suffix, _)| *suffix);
+            let name = match element.and_then(|e| e.attribute("name")).filter(|n| !n.is_empty()) {
+                Some(name) => name.to_owned(),
+                None => format!(
+                    "{}_{}",
+                    joint.attribute("name").unwrap_or("joint"),
+                    suffix.unwrap_or("q")
+                ),
+            };
+            if coordinates.ids.iter().any(|(known, _)| *known == name) {
+                return Err(element
+                    .unwrap_or(joint)
+                    .error(
+                        "osim/duplicate-coordinate",
+                        format!("{} has two coordinates `{name}`", joint.describe()),
+                    )
+                    .with_help("give each coordinate of a joint a name of its own"));
+            }
+            let kind = standard.get(index).map_or(CoordinateKind::Other, |(_, kind)| *kind);
+            let id = reader.builder.coordinate(set, &name, kind);
+            if let Some(element) = element {
+                read_properties(reader, element, id)?;
+            }
+            coordinates.ids.push((name, id));
+        }
+        Ok(coordinates)
+    }
+
+    fn source(&self, index: usize) -> Source {
+        Source::Coordinate(self.ids[index].1)
+    }
+
+    fn named(
+        &self,
+        joint: Element<'_>,
+        at: Element<'_>,
+        name: &str,
+    ) -> Result<CoordinateId, Error> {
+        self.ids.iter().find(|(known, _)| known == name).map(|(_, id)| *id).ok_or_else(|| {
+            let known: Vec<&str> = self.ids.iter().map(|(name, _)| name.as_str()).collect();
+            at.error(
+                "osim/unknown-coordinate",
+                format!("{} has no coordinate `{name}`", joint.describe()),
+            )
+            .with_help(format!("its coordinates are: {}", known.join(", ")))
+        })
+    }
+}
+
+fn read_properties(
+    reader: &mut Reader<'_, '_>,
+    element: Element<'_>,
+    id: CoordinateId,
+) -> Result<(), Error> {
+    let default = element.child_f64("default_value")?.unwrap_or(0.0);
+    if !default.is_finite() {
+        return Err(element
+            .error(
+                "osim/not-finite",
+                format!("the default of {} is not finite", element.describe()),
+            )
+            .with_help("give a number"));
+    }
+    let range = element.child_numbers::<2>("range")?;
+    let clamped = element.child_bool("clamped")?.unwrap_or(false);
+    let locked = element.child_bool("locked")?.unwrap_or(false);
+    let prescribed = element.child_bool("prescribed")?.unwrap_or(false);
+    if let Some([lower, upper]) = range
+        && (lower.is_nan() || upper.is_nan())
+    {
+        return Err(element
+            .error(
+                "osim/not-finite",
+                format!("the range of {} is not a number", element.describe()),
+            )
+            .with_help("give the lowest and the highest value"));
+    }
+    if prescribed {
+        reader.warn(
+            "osim/prescribed",
+            element,
+            format!("{} is prescribed as a function of time", element.describe()),
+            "it is kept at its default value",
+        );
+    }
+    let coordinate = reader.builder.coordinate_mut(id);
+    coordinate.default[0] = default;
+    coordinate.locked = locked || prescribed;
+    if let Some([lower, upper]) = range {
+        let side = |v: f64| v.is_finite().then_some(v);
+        coordinate.range = Range { lower: side(lower), upper: side(upper), enforced: clamped };
+    }
+    Ok(())
+}
+
+fn factors(
+    reader: &mut Reader<'_, '_>,
+    set: JointSetId,
+    element: Element<'_>,
+    coordinates: &Coordinates<'_>,
+) -> Result<Vec<Factor>, Error> {
+    let q = |i: usize| coordinates.source(i);
+    let turn = |i: usize, axis: Vec3| Factor::Turn(q(i), axis);
+    let slide = |i: usize, axis: Vec3| Factor::Slide(q(i), axis);
+    let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
+    Ok(match element.name() {
+        "WeldJoint" => vec![],
+        "PinJoint" => vec![turn(0, z)],
+        "SliderJoint" => vec![slide(0, x)],
+        "UniversalJoint" => vec![turn(0, x), turn(1, y)],
+        "BallJoint" | "GimbalJoint" => vec![turn(0, x), turn(1, y), turn(2, z)],
+        "PlanarJoint" => vec![slide(1, x), slide(2, y), turn(0, z)],
+        "FreeJoint" => {
+            vec![slide(3, x), slide(4, y), slide(5, z), turn(0, x), turn(1, y), turn(2, z)]
+        }
+        "CustomJoint" => custom(reader, set, element, coordinates)?,
+        "EllipsoidJoint" => {
+            let radii = triple(element, "radii_x_y_z")?;
+            vec![Factor::Law(reader.builder.ellipsoid(set, "surface", [q(0), q(1), q(2)], radii))]
+        }
+        "ScapulothoracicJoint" => {
+            let radii = triple(element, "thoracic_ellipsoid_radii_x_y_z")?;
+            let origin =
+                element.child_numbers::<2>("scapula_winging_axis_origin")?.unwrap_or_default();
+            let direction = element.child_f64("scapula_winging_axis_direction")?.unwrap_or(0.0);
+            // The surface's third axis points out of the ribs; its first two are exchanged.
+            let radii = Vec3::new(radii.y, radii.x, radii.z);
+            let quarter = |sign: f64| {
+                Factor::Fixed(Affine::from_rotation(Mat3::rotation_z(sign * FRAC_PI_2)))
+            };
+            let hinge = Affine::from_translation(Vec3::new(origin[0], origin[1], 0.0));
+            let axis = Vec3::new(-direction.sin(), direction.cos(), 0.0);
+            let surface = reader.builder.ellipsoid(set, "surface", [q(0), q(1), q(2)], radii);
+            vec![
+                quarter(1.0),
+                Factor::Law(surface),
+                quarter(-1.0),
+                Factor::Fixed(hinge),
+                turn(3, axis),
+                Factor::Fixed(hinge.rigid_inverse()),
+            ]
+        }
+        "ConstantCurvatureJoint" => {
+            let neutral = triple(element, "neutral_angle_x_z_y")?.to_array();
+            let length = element.child_f64("length")?.unwrap_or(1.0);
+            let column = ConstantCurvature { angles: [q(0), q(1), q(2)], neutral, length };
+            vec![Factor::Law(reader.builder.constant_curvature(set, "column", column))]
+        }
+        other => {
+            return Err(element
+                .error("osim/unknown-joint", format!("the joint type `{other}` is not known"))
+                .with_help("use one of OpenSim's own joint types, for example a CustomJoint"));
+        }
+    })
+}
+
+/// A custom joint: translations along three axes, then rotations about three body-fixed axes.
+fn custom(
+    reader: &mut Reader<'_, '_>,
+    set: JointSetId,
+    element: Element<'_>,
+    coordinates: &Coordinates<'_>,
+) -> Result<Vec<Factor>, Error> {
+    let mut turns = vec![];
+    let mut slides = vec![];
+    let mut kinds: Vec<CoordinateKind> = vec![CoordinateKind::Other; coordinates.ids.len()];
+    let holder = element.child("SpatialTransform").or_else(|| {
+        let set = element.child("TransformAxisSet")?;
+        Some(set.child("objects").unwrap_or(set))
+    });
+    let axes: Vec<Element<'_>> =
+        holder.into_iter().flat_map(|h| h.children_named("TransformAxis")).collect();
+    for (index, &axis_element) in axes.iter().enumerate() {
+        let rotation = axis_element.child_bool("is_rotation")?.unwrap_or(index < 3);
+        let default = [Vec3::X, Vec3::Y, Vec3::Z][index % 3];
+        let axis = match axis_element.child("axis") {
+            Some(_) => triple(axis_element, "axis")?,
+            None => default,
+        };
+        let drivers =
+            axis_element.child("coordinates").or_else(|| axis_element.child("coordinate"));
+        let mut inputs = vec![];
+        for name in drivers.map_or("", |d| d.text()).split_whitespace() {
+            let at = drivers.unwrap_or(axis_element);
+            inputs.push(coordinates.named(element, at, name)?);
+        }
+        let function = function::inside(axis_element)?;
+        note_kind(&mut kinds, coordinates, &inputs, function.as_ref(), rotation);
+        let name = axis_element.attribute("name").filter(|n| !n.is_empty());
+        let name = name.map_or_else(|| format!("axis_{}", index + 1), str::to_owned);
+        let Some(amount) = amount(reader, set, axis_element, &name, &inputs, function)? else {
+            continue;
+        };
+        if rotation {
+            turns.push(Factor::Turn(amount, axis));
+        } else {
+            slides.push(Factor::Slide(amount, axis));
+        }
+    }
+    for ((_, id), kind) in coordinates.ids.iter().zip(kinds) {
+        reader.builder.coordinate_mut(*id).kind = kind;
+    }
+    slides.extend(turns);
+    Ok(slides)
+}
+
+/// OpenSim calls a coordinate rotational (translational) if some axis takes it as it is, up to
+/// sign, as its angle (distance), the last such axis deciding; all others are coupled, and files
+/// hold them without degrees.
+fn note_kind(
+    kinds: &mut [CoordinateKind],
+    coordinates: &Coordinates<'_>,
+    inputs: &[CoordinateId],
+    function: Option<&AnyFunction>,
+    rotation: bool,
+) {
+    let plain = match function {
+        None => true,
+        Some(AnyFunction::One(Function { factor, curve: Curve::Linear { slope, .. } })) => {
+            *factor == 1.0 && slope.abs() == 1.0
+        }
+        Some(_) => false,
+    };
+    let [id] = inputs else { return };
+    if let Some(index) = coordinates.ids.iter().position(|(_, known)| known == id)
+        && plain
+    {
+        kinds[index] =
+            if rotation { CoordinateKind::Rotation } else { CoordinateKind::Translation };
+    }
+}
+
+/// What drives an axis: nothing, a coordinate as it is, or a function of one or several.
+fn amount(
+    reader: &mut Reader<'_, '_>,
+    set: JointSetId,
+    element: Element<'_>,
+    name: &str,
+    inputs: &[CoordinateId],
+    function: Option<AnyFunction>,
+) -> Result<Option<Source>, Error> {
+    let sources: Vec<Source> = inputs.iter().map(|&id| Source::Coordinate(id)).collect();
+    let mismatch = |expected: usize| {
+        element
+            .error(
+                "osim/arity",
+                format!(
+                    "{} has {} coordinates but its function takes {expected}",
+                    element.describe(),
+                    inputs.len()
+                ),
+            )
+            .with_help("list as many coordinates as the function has arguments")
+    };
+    match (&sources[..], function) {
+        ([], None) => Ok(None),
+        ([one], None) => Ok(Some(*one)),
+        (_, None) => Err(mismatch(1)),
+        ([one], Some(AnyFunction::One(function))) => {
+            Ok(Some(reader.builder.map(set, name, *one, function)))
+        }
+        ([], Some(AnyFunction::One(function))) => {
+            // A constant needs no argument, and any other function is taken at 0.
+            let value = function.value_and_slope(0.0).0;
+            if value == 0.0 {
+                return Ok(None);
+            }
+            let constant = condyle_math::function::FunctionOfSeveral::Linear {
+                slopes: vec![],
+                intercept: value,
+            };
+            Ok(Some(reader.builder.combine(set, name, vec![], constant)))
+        }
+        (_, Some(AnyFunction::One(_))) => Err(mismatch(1)),
+        (list, Some(AnyFunction::Several(function))) => {
+            if list.len() != function.arity() {
+                return Err(mismatch(function.arity()));
+            }
+            Ok(Some(reader.builder.combine(set, name, list.to_vec(), function)))
+        }
+    }
+}

@@ -1,0 +1,178 @@
+//! Musculoskeletal models of OpenSim (`.osim`), as far as they say how bones move.
+//!
+//! Two generations are read into the same [`Model`]. Files of version 4 keep a `JointSet` whose
+//! joints name their frames by paths; older ones keep each joint inside the body it carries:
+//!
+//! ```text
+//! OpenSimDocument Version=4xxxx          OpenSimDocument Version=1xxxx … 3xxxx
+//! └ Model                                └ Model
+//!   ├ BodySet/objects/Body                 ├ BodySet/objects/Body
+//!   ├ JointSet/objects/<X>Joint            │   └ Joint/<X>Joint: parent_body, location_in_parent, …
+//!   │   ├ socket_parent_frame, …           ├ ConstraintSet/objects/<X>Constraint
+//!   │   ├ coordinates/Coordinate           └ MarkerSet/objects/Marker: body, location
+//!   │   └ frames/PhysicalOffsetFrame
+//!   ├ ConstraintSet, MarkerSet
+//! ```
+//!
+//! Every joint becomes a joint set of the same components that hand-written ones use: a pin is a
+//! `rotate`, a custom joint a product of `translate` and `rotate` components whose numbers come
+//! from `map` components, a coordinate coupler lets one coordinate follow another. Constraints that
+//! close loops are kept as closures. Masses, muscles and forces are skipped in silence; anything
+//! that would change the motion and is not understood is an error or a warning.
+
+mod constraint;
+mod frame;
+mod function;
+mod joint;
+mod joint_graph;
+
+use crate::diagnostic::{Diagnostic, Error, Read, Warnings};
+use crate::xml::{Element, XmlDocument};
+use condyle_math::Vec3;
+use condyle_model::{Model, ModelBuilder, SegmentId, Severity};
+use frame::Frames;
+
+/// Reads a model from the bytes of an `.osim` file.
+///
+/// # Errors
+/// What is wrong, with its line: not XML, not a model, names that lead nowhere or in a circle,
+/// joints or functions that are not known, lists of the wrong length.
+///
+/// ```
+/// let text = r#"<OpenSimDocument Version="40000"><Model name="arm">
+///   <BodySet><objects><Body name="forearm"/></objects></BodySet>
+///   <JointSet><objects><PinJoint name="elbow">
+///     <socket_parent_frame>/ground</socket_parent_frame>
+///     <socket_child_frame>/bodyset/forearm</socket_child_frame>
+///     <coordinates><Coordinate name="flexion"><range>0 2.5</range></Coordinate></coordinates>
+///   </PinJoint></objects></JointSet></Model></OpenSimDocument>"#;
+/// let model = condyle_formats::opensim::model::read(text.as_bytes())?.value;
+/// assert_eq!(model.coordinates()[0].range.upper, Some(2.5));
+/// # Ok::<(), condyle_formats::Error>(())
+/// ```
+pub fn read(bytes: &[u8]) -> Result<Read<Model>, Error> {
+    let document = XmlDocument::from_bytes(bytes)?;
+    let mut warnings = Warnings::default();
+    warnings.extend(document.warnings);
+    let root = document.value.root();
+    let model = match root.name() {
+        "Model" => root,
+        _ => root.child("Model").ok_or_else(|| {
+            root.error("osim/no-model", format!("{} holds no <Model>", root.describe()))
+                .with_help("give an OpenSim model, not a setup or a results file")
+        })?,
+    };
+    let model = Reader::new(model, &mut warnings)?.read()?;
+    Ok(Read { value: model, warnings: warnings.finish() })
+}
+
+/// The model file while it is read.
+struct Reader<'d, 'w> {
+    element: Element<'d>,
+    builder: ModelBuilder,
+    frames: Frames<'d>,
+    warnings: &'w mut Warnings,
+}
+
+impl<'d, 'w> Reader<'d, 'w> {
+    fn new(element: Element<'d>, warnings: &'w mut Warnings) -> Result<Self, Error> {
+        let mut builder = ModelBuilder::new(element.attribute("name").unwrap_or("model"));
+        let frames = Frames::collect(element, &mut builder)?;
+        Ok(Self { element, builder, frames, warnings })
+    }
+
+    fn read(mut self) -> Result<Model, Error> {
+        let joints = joint_graph::collect(&mut self)?;
+        for joint in &joints {
+            joint::build(&mut self, joint)?;
+        }
+        constraint::read_all(&mut self)?;
+        self.markers()?;
+        let line = self.element.place();
+        match self.builder.build_with_findings() {
+            Ok((model, findings)) => {
+                for finding in findings {
+                    if finding.severity == Severity::Warning && finding.code != "model/axis-length"
+                    {
+                        let said = Diagnostic::new(finding.code, finding.message);
+                        self.warnings.push(said.with_help(finding.help));
+                    }
+                }
+                Ok(model)
+            }
+            Err(findings) => {
+                let errors: Vec<_> =
+                    findings.into_iter().filter(|f| f.severity == Severity::Error).collect();
+                let more = match errors.len() {
+                    0 | 1 => String::new(),
+                    n => format!(" (and {} more)", n - 1),
+                };
+                match errors.into_iter().next() {
+                    Some(f) => {
+                        Err(Error::new(f.code, f.message + &more).with_help(f.help).at(line))
+                    }
+                    None => Err(Error::new("osim/model", "the model cannot be built").at(line)),
+                }
+            }
+        }
+    }
+
+    fn warn(
+        &mut self,
+        code: &'static str,
+        at: Element<'_>,
+        message: impl Into<String>,
+        help: &str,
+    ) {
+        let said = Diagnostic::new(code, message).at(at.place()).with_help(help);
+        self.warnings.push(said);
+    }
+
+    /// All elements `kind` of the set of that name, in order.
+    fn set_objects(&self, set: &str) -> Vec<Element<'d>> {
+        self.element
+            .children_named(set)
+            .flat_map(|set| set.child("objects").into_iter().chain(Some(set)))
+            .flat_map(|list| list.children())
+            .filter(|e| !matches!(e.name(), "objects" | "groups" | "defaults"))
+            .collect()
+    }
+
+    fn markers(&mut self) -> Result<(), Error> {
+        let mut seen = std::collections::HashSet::new();
+        for element in self.set_objects("MarkerSet") {
+            if !element.is("Marker") {
+                continue;
+            }
+            let name = element.attribute("name").unwrap_or_default().to_owned();
+            if !seen.insert(name.clone()) {
+                self.warn(
+                    "osim/duplicate-marker",
+                    element,
+                    format!("a second marker is named `{name}`"),
+                    "the first one is used",
+                );
+                continue;
+            }
+            let point = element.child_numbers::<3>("location")?.unwrap_or_default();
+            let (base, frame) = self.frames.of_part(element, "parent_frame", "body")?;
+            self.builder.marker(&name, base, frame * Vec3::from(point));
+        }
+        Ok(())
+    }
+}
+
+/// The world or one of the model's segments.
+type Base = Option<SegmentId>;
+
+/// A finite triple of numbers, or its default.
+fn triple(element: Element<'_>, name: &str) -> Result<Vec3, Error> {
+    let found = Vec3::from(element.child_numbers::<3>(name)?.unwrap_or_default());
+    if found.is_finite() {
+        return Ok(found);
+    }
+    let at = element.child(name).unwrap_or(element);
+    Err(at
+        .error("osim/not-finite", format!("<{name}> of {} is not finite", element.describe()))
+        .with_help("give three numbers that are neither NaN nor infinite"))
+}

@@ -1,0 +1,479 @@
+//! Setup files of OpenSim's inverse kinematics tool.
+//!
+//! What a setup names it names from its own place: paths are given as written, and `Unassigned`
+//! or blank means none. The task set may stand inside or in a file of its own; then
+//! [`IkTasks::File`] names it and [`read_tasks`] reads it.
+
+use crate::diagnostic::{Diagnostic, Error, Read, Warnings, nearest};
+use crate::xml::{Element, XmlDocument};
+
+/// What an inverse kinematics run is told to do.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IkSetup {
+    /// The tool's name; may be empty.
+    pub name: String,
+    /// The model, as written.
+    pub model_file: Option<String>,
+    /// The marker recording, as written.
+    pub marker_file: Option<String>,
+    /// The motion that tasks with [`CoordinateTarget::FromFile`] follow, as written.
+    pub coordinate_file: Option<String>,
+    /// Where the answer goes, as written.
+    pub output_motion_file: Option<String>,
+    /// First and last time to solve, in seconds, either of which may be infinite; none for all of
+    /// the recording.
+    pub time_range: Option<[f64; 2]>,
+    /// The weight of constraint errors; infinite, the default, if they must not be.
+    pub constraint_weight: f64,
+    /// The accuracy asked for; 1e-5 by default.
+    pub accuracy: f64,
+    /// What to follow, and how strongly.
+    pub tasks: IkTasks,
+}
+
+/// Where a setup's tasks are.
+#[derive(Debug, Clone, PartialEq)]
+pub enum IkTasks {
+    /// In the setup itself; empty if it has none.
+    Inline(IkTaskSet),
+    /// In a file of their own, to be read by [`read_tasks`]; the path as written.
+    File(String),
+}
+
+/// What to follow, and how strongly.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct IkTaskSet {
+    /// Markers; no two of one name.
+    pub markers: Vec<MarkerTask>,
+    /// Coordinates; no two of one name.
+    pub coordinates: Vec<CoordinateTask>,
+}
+
+/// Bring a model's marker to where it was recorded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MarkerTask {
+    /// The marker's name in model and recording.
+    pub name: String,
+    /// Whether the task is on.
+    pub apply: bool,
+    /// The weight of the squared distance; not negative.
+    pub weight: f64,
+}
+
+/// Bring a coordinate to a value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CoordinateTask {
+    /// The coordinate's name in the model.
+    pub name: String,
+    /// Whether the task is on.
+    pub apply: bool,
+    /// The weight of the squared difference; not negative.
+    pub weight: f64,
+    /// The value to reach.
+    pub target: CoordinateTarget,
+}
+
+/// The value a coordinate is brought to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CoordinateTarget {
+    /// The coordinate's default in the model.
+    Default,
+    /// A fixed value in radians or metres.
+    Manual(f64),
+    /// The value at each time in the setup's coordinate file.
+    FromFile,
+}
+
+/// Reads a setup.
+///
+/// # Errors
+///
+/// Those of [`XmlDocument::parse`] and of its numbers; `setup/not-ik` if there is no inverse
+/// kinematics tool, `setup/time-range`, `setup/weight`, `setup/value-type`.
+///
+/// ```
+/// use condyle_formats::opensim::setup;
+/// let text = r#"<OpenSimDocument Version="40000"><InverseKinematicsTool>
+///     <model_file>arm.osim</model_file> <coordinate_file>Unassigned</coordinate_file>
+///     <constraint_weight>20</constraint_weight>
+///     <IKTaskSet file="tasks.xml"/>
+/// </InverseKinematicsTool></OpenSimDocument>"#;
+/// let setup = setup::read(text)?.value;
+/// assert_eq!(setup.model_file.as_deref(), Some("arm.osim"));
+/// assert_eq!(setup.coordinate_file, None);
+/// assert_eq!(setup.constraint_weight, 20.0);
+/// assert_eq!(setup.tasks, setup::IkTasks::File("tasks.xml".into()));
+/// # Ok::<(), condyle_formats::Error>(())
+/// ```
+pub fn read(text: &str) -> Result<Read<IkSetup>, Error> {
+    from_document(XmlDocument::parse(text)?)
+}
+
+/// Reads a setup from bytes.
+///
+/// # Errors
+///
+/// As [`read`].
+pub fn from_bytes(bytes: &[u8]) -> Result<Read<IkSetup>, Error> {
+    from_document(XmlDocument::from_bytes(bytes)?)
+}
+
+/// Reads a task set that has a file of its own: an `<IKTaskSet>`, bare or in an
+/// `<OpenSimDocument>`.
+///
+/// # Errors
+///
+/// Those of [`XmlDocument::parse`] and of its numbers; `setup/no-tasks` if there is no task set,
+/// `setup/weight`, `setup/value-type`.
+///
+/// ```
+/// use condyle_formats::opensim::setup;
+/// let text = r#"<IKTaskSet><objects><IKMarkerTask name="RASI"><weight>10</weight>
+/// </IKMarkerTask></objects></IKTaskSet>"#;
+/// let tasks = setup::read_tasks(text)?.value;
+/// assert_eq!((tasks.markers[0].apply, tasks.markers[0].weight), (true, 10.0));
+/// # Ok::<(), condyle_formats::Error>(())
+/// ```
+pub fn read_tasks(text: &str) -> Result<Read<IkTaskSet>, Error> {
+    tasks_from_document(XmlDocument::parse(text)?)
+}
+
+/// Reads a task set from bytes.
+///
+/// # Errors
+///
+/// As [`read_tasks`].
+pub fn tasks_from_bytes(bytes: &[u8]) -> Result<Read<IkTaskSet>, Error> {
+    tasks_from_document(XmlDocument::from_bytes(bytes)?)
+}
+
+const TOOL: &str = "InverseKinematicsTool";
+
+/// What a tool may hold; what is not used is here so that a mistyped name can be told.
+const PROPERTIES: [&str; 12] = [
+    "IKTaskSet",
+    "accuracy",
+    "constraint_weight",
+    "coordinate_file",
+    "input_directory",
+    "marker_file",
+    "model_file",
+    "output_motion_file",
+    "report_errors",
+    "report_marker_locations",
+    "results_directory",
+    "time_range",
+];
+
+fn from_document(document: Read<XmlDocument>) -> Result<Read<IkSetup>, Error> {
+    let mut warnings = Warnings::default();
+    warnings.extend(document.warnings);
+    let tool = tool(document.value.root(), &mut warnings)?;
+    for child in tool.children().filter(|child| !PROPERTIES.contains(&child.name())) {
+        if let Some(meant) = nearest(child.name(), PROPERTIES)
+            && distance(child.name(), meant) <= 3
+        {
+            warnings.add("setup/unknown", || {
+                Diagnostic::new("setup/unknown", format!("<{}> is not known", child.name()))
+                    .at(child.place())
+                    .with_help(format!("it was skipped; did you mean <{meant}>?"))
+            });
+        }
+    }
+    let tasks = match tool.child("IKTaskSet") {
+        None => {
+            warnings.push(
+                Diagnostic::new("setup/no-tasks", format!("{} has no tasks", tool.describe()))
+                    .at(tool.place()),
+            );
+            IkTasks::Inline(IkTaskSet::default())
+        }
+        Some(set) => match set.attribute("file").and_then(assigned) {
+            Some(file) => IkTasks::File(file),
+            None => IkTasks::Inline(task_set(set, &mut warnings)?),
+        },
+    };
+    let setup = IkSetup {
+        name: tool.attribute("name").unwrap_or_default().to_owned(),
+        model_file: file(tool, "model_file"),
+        marker_file: file(tool, "marker_file"),
+        coordinate_file: file(tool, "coordinate_file"),
+        output_motion_file: file(tool, "output_motion_file"),
+        time_range: time_range(tool)?,
+        constraint_weight: weight(tool, "constraint_weight")?.unwrap_or(f64::INFINITY),
+        accuracy: tool.child_f64("accuracy")?.unwrap_or(1e-5),
+        tasks,
+    };
+    Ok(Read { value: setup, warnings: warnings.finish() })
+}
+
+/// The tool itself, bare or in its document; OpenSim's own files have it misspelt.
+fn tool<'d>(root: Element<'d>, warnings: &mut Warnings) -> Result<Element<'d>, Error> {
+    let candidates = || std::iter::once(root).chain(root.children());
+    if let Some(tool) = candidates().find(|e| e.is(TOOL)) {
+        return Ok(tool);
+    }
+    if let Some(tool) = candidates().find(|e| distance(e.name(), TOOL) <= 2) {
+        warnings.push(
+            Diagnostic::new("setup/misspelt", format!("<{}> is not known", tool.name()))
+                .at(tool.place())
+                .with_help(format!("read as <{TOOL}>")),
+        );
+        return Ok(tool);
+    }
+    let found = root.children().next().unwrap_or(root);
+    Err(found
+        .error("setup/not-ik", format!("there is no <{TOOL}>, only <{}>", found.name()))
+        .with_help("this is not a setup of inverse kinematics"))
+}
+
+/// How many letters differ; names of elements are short.
+fn distance(a: &str, b: &str) -> usize {
+    if a.len() > 64 { usize::MAX } else { strsim::levenshtein(a, b) }
+}
+
+/// A path, unless it is blank or says that there is none.
+fn assigned(path: &str) -> Option<String> {
+    let path = path.trim();
+    (!path.is_empty() && !path.eq_ignore_ascii_case("unassigned")).then(|| path.to_owned())
+}
+
+fn file(tool: Element<'_>, name: &str) -> Option<String> {
+    tool.child_text(name).and_then(assigned)
+}
+
+fn time_range(tool: Element<'_>) -> Result<Option<[f64; 2]>, Error> {
+    let Some(range) = tool.child_numbers::<2>("time_range")? else { return Ok(None) };
+    let [start, end] = range;
+    if range == [f64::NEG_INFINITY, f64::INFINITY] {
+        return Ok(None);
+    }
+    if start <= end {
+        return Ok(Some(range));
+    }
+    let place = tool.child("time_range").unwrap_or(tool);
+    Err(place
+        .error("setup/time-range", format!("the time range `{start} {end}` is empty"))
+        .with_help("write the first and the last time in seconds"))
+}
+
+/// A child's weight; none if there is no such child or it is blank.
+fn weight(element: Element<'_>, name: &str) -> Result<Option<f64>, Error> {
+    let Some(child) = element.child(name) else { return Ok(None) };
+    if assigned(child.text()).is_none() {
+        return Ok(None);
+    }
+    match child.f64()? {
+        weight if weight >= 0.0 => Ok(Some(weight)),
+        weight => Err(child
+            .error("setup/weight", format!("the weight {weight} of {}", element.describe()))
+            .with_help("a weight is 0 or more")),
+    }
+}
+
+fn tasks_from_document(document: Read<XmlDocument>) -> Result<Read<IkTaskSet>, Error> {
+    let mut warnings = Warnings::default();
+    warnings.extend(document.warnings);
+    let root = document.value.root();
+    let set = std::iter::once(root).chain(root.children()).find(|e| e.is("IKTaskSet"));
+    let Some(set) = set.or_else(|| root.find(&[TOOL, "IKTaskSet"])) else {
+        return Err(root
+            .error("setup/no-tasks", format!("there is no <IKTaskSet> in {}", root.describe()))
+            .with_help("this is not a set of inverse kinematics tasks"));
+    };
+    if set.attribute("file").and_then(assigned).is_some() {
+        return Err(set
+            .error("setup/no-tasks", "the task set only names another file")
+            .with_help("name that file in the setup"));
+    }
+    let tasks = task_set(set, &mut warnings)?;
+    Ok(Read { value: tasks, warnings: warnings.finish() })
+}
+
+/// The tasks of a set, of two with one name the first.
+fn task_set(set: Element<'_>, warnings: &mut Warnings) -> Result<IkTaskSet, Error> {
+    let mut tasks = IkTaskSet::default();
+    let mut seen = std::collections::HashSet::new();
+    for task in set.child("objects").unwrap_or(set).children() {
+        if !task.is("IKMarkerTask") && !task.is("IKCoordinateTask") {
+            if !matches!(task.name(), "objects" | "groups" | "defaults") {
+                warnings.add("setup/unknown-task", || {
+                    Diagnostic::new("setup/unknown-task", format!("<{}> is no task", task.name()))
+                        .at(task.place())
+                        .with_help("it was skipped; tasks are IKMarkerTask and IKCoordinateTask")
+                });
+            }
+            continue;
+        }
+        let name = task.require_attribute("name")?.to_owned();
+        let apply = task.child_bool("apply")?.unwrap_or(true);
+        let given = weight(task, "weight")?;
+        if given.is_none() {
+            warnings.add("setup/no-weight", || {
+                Diagnostic::new("setup/no-weight", format!("{} has no weight", task.describe()))
+                    .at(task.place())
+                    .with_help("it is 0, as in OpenSim")
+            });
+        }
+        let weight = given.unwrap_or(0.0);
+        if !weight.is_finite() {
+            return Err(task
+                .error("setup/weight", format!("the weight of {} is infinite", task.describe()))
+                .with_help("write a large number; only constraint_weight may be infinite"));
+        }
+        if !seen.insert((task.name(), name.clone())) {
+            warnings.add("setup/duplicate-task", || {
+                Diagnostic::new("setup/duplicate-task", format!("{} repeats", task.describe()))
+                    .at(task.place())
+                    .with_help("the first of them rules")
+            });
+        } else if task.is("IKMarkerTask") {
+            tasks.markers.push(MarkerTask { name, apply, weight });
+        } else {
+            let target = target(task)?;
+            tasks.coordinates.push(CoordinateTask { name, apply, weight, target });
+        }
+    }
+    Ok(tasks)
+}
+
+fn target(task: Element<'_>) -> Result<CoordinateTarget, Error> {
+    let kind = task.child_text("value_type").unwrap_or("default_value");
+    match kind.to_ascii_lowercase().as_str() {
+        "default_value" => Ok(CoordinateTarget::Default),
+        "from_file" => Ok(CoordinateTarget::FromFile),
+        "manual_value" => {
+            let value = task.child_f64("value")?.unwrap_or(0.0);
+            if value.is_finite() {
+                return Ok(CoordinateTarget::Manual(value));
+            }
+            Err(task
+                .error("setup/value-type", format!("the value of {} is {value}", task.describe()))
+                .with_help("expected a finite number"))
+        }
+        _ => Err(task
+            .child("value_type")
+            .unwrap_or(task)
+            .error("setup/value-type", format!("`{kind}` is no kind of value"))
+            .with_help("expected default_value, manual_value or from_file")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tool(inside: &str) -> Result<Read<IkSetup>, Error> {
+        read(&format!("<InverseKinematicsTool>\n{inside}</InverseKinematicsTool>"))
+    }
+
+    #[test]
+    fn everything_has_a_default() {
+        let read = tool("").unwrap();
+        assert!(read.warned("setup/no-tasks"));
+        let setup = read.value;
+        assert_eq!(setup.model_file, None);
+        assert_eq!(setup.time_range, None);
+        assert_eq!(setup.constraint_weight, f64::INFINITY);
+        assert_eq!(setup.accuracy, 1e-5);
+        assert_eq!(setup.tasks, IkTasks::Inline(IkTaskSet::default()));
+    }
+
+    #[test]
+    fn infinity_has_many_names() {
+        for (text, weight) in [
+            ("Inf", f64::INFINITY),
+            (" infinity ", f64::INFINITY),
+            ("Infinity", f64::INFINITY),
+            ("", f64::INFINITY),
+            ("Unassigned", f64::INFINITY),
+            ("1.#INF", f64::INFINITY),
+            ("20", 20.0),
+            ("1e-005", 1e-5),
+        ] {
+            let text = format!("<constraint_weight>{text}</constraint_weight>");
+            assert_eq!(tool(&text).unwrap().value.constraint_weight, weight, "{text}");
+        }
+    }
+
+    #[test]
+    fn tasks_of_both_kinds() {
+        let read = tool(
+            "<IKTaskSet><objects>
+              <IKMarkerTask name='a'><apply>FALSE</apply><weight>2</weight></IKMarkerTask>
+              <IKMarkerTask name='a'><weight>3</weight></IKMarkerTask>
+              <IKCoordinateTask name='k'><weight>1000</weight>
+                <value_type>manual_value</value_type><value>0.25</value></IKCoordinateTask>
+              <IKCoordinateTask name='f'><weight>1</weight>
+                <value_type>from_file</value_type></IKCoordinateTask>
+              <IKCoordinateTask name='d'/>
+              <IKSensorTask/>
+            </objects><groups/></IKTaskSet>",
+        )
+        .unwrap();
+        let codes: Vec<_> = read.warnings.iter().map(|w| w.code).collect();
+        assert_eq!(codes, ["setup/duplicate-task", "setup/no-weight", "setup/unknown-task"]);
+        let IkTasks::Inline(tasks) = read.value.tasks else { panic!("tasks are inline") };
+        assert_eq!(tasks.markers, [MarkerTask { name: "a".into(), apply: false, weight: 2.0 }]);
+        let targets: Vec<_> = tasks.coordinates.iter().map(|t| t.target).collect();
+        assert_eq!(
+            targets,
+            [CoordinateTarget::Manual(0.25), CoordinateTarget::FromFile, CoordinateTarget::Default]
+        );
+        assert_eq!(tasks.coordinates[2].weight, 0.0);
+    }
+
+    #[test]
+    fn faults_are_placed() {
+        for (text, said) in [
+            ("<time_range>2 1</time_range>", "line 2, column 1: the time range `2 1` is empty"),
+            ("<time_range>2</time_range>", "line 2, column 1: <time_range> holds 1 numbers"),
+            ("<accuracy>fine</accuracy>", "line 2, column 1: `fine` in <accuracy> is not a number"),
+            (
+                "<IKTaskSet><objects><IKMarkerTask name='a'><weight>-1</weight>\
+                 </IKMarkerTask></objects></IKTaskSet>",
+                "line 2, column 44: the weight -1 of <IKMarkerTask name=\"a\">",
+            ),
+            (
+                "<IKTaskSet><objects><IKMarkerTask><weight>1</weight></IKMarkerTask></objects>\
+                 </IKTaskSet>",
+                "line 2, column 21: <IKMarkerTask> has no attribute `name`",
+            ),
+            (
+                "<IKTaskSet><IKCoordinateTask name='a'><value_type>x</value_type>\
+                 </IKCoordinateTask></IKTaskSet>",
+                "line 2, column 39: `x` is no kind of value",
+            ),
+        ] {
+            let error = tool(text).unwrap_err().to_string();
+            assert!(error.starts_with(said), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_misspelt_tool_is_read_and_another_is_not() {
+        let read = read("<OpenSimDocument><InverseKinemtaticsTool/></OpenSimDocument>").unwrap();
+        assert!(read.warned("setup/misspelt"));
+        let error =
+            super::read("<OpenSimDocument><InverseDynamicsTool/></OpenSimDocument>").unwrap_err();
+        assert_eq!(error.code(), "setup/not-ik");
+    }
+
+    #[test]
+    fn a_mistyped_property_is_told() {
+        let read = tool("<marker_fil>a.trc</marker_fil><IKTaskSet/>").unwrap();
+        assert_eq!(
+            read.warnings[0].to_string(),
+            "line 2, column 1: <marker_fil> is not known \
+             (it was skipped; did you mean <marker_file>?)"
+        );
+    }
+
+    #[test]
+    fn a_task_set_must_be_one() {
+        assert_eq!(read_tasks("<Model/>").unwrap_err().code(), "setup/no-tasks");
+        assert_eq!(read_tasks("<IKTaskSet file='x'/>").unwrap_err().code(), "setup/no-tasks");
+        let wrapped = "<OpenSimDocument><IKTaskSet><objects/></IKTaskSet></OpenSimDocument>";
+        assert_eq!(read_tasks(wrapped).unwrap().value, IkTaskSet::default());
+    }
+}

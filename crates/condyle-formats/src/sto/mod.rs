@@ -1,0 +1,29 @@
+//! STO and MOT, the tables of OpenSim and of SIMM before it.
+//!
+//! ```text
+//! file   = { header line }  "endheader"  { blank line }  names  { row }
+//! header = key "=" value  |  SIMM key  value  |  title  |  any other text
+//! names  = "time" { name }
+//! ```
+//!
+//! Cells are separated by tabs; where the line of names has none, by commas or by spaces.
+//! What is made of the dialects:
+//!
+//! - `inDegrees=yes|no`, in any case, says what rotations are in. A header with the keys of SIMM
+//!   (`datacolumns`, `datarows`, `otherdata`, `range`) and without `inDegrees` means degrees, as
+//!   does the sentence `Angles are in degrees`. Otherwise the unit is
+//!   [`Unstated`](crate::AngleUnit::Unstated). A file that contradicts itself is believed by its
+//!   key, with a warning.
+//! - Cells of several numbers (`DataType=Vec3`, `Quaternion`) become columns `name_1`, `name_2`,
+//!   ... in the order of the file (OpenSim's quaternions are w, x, y, z), with a warning.
+//! - Blank cells and rows that end early are NaN; a row with too many cells is an error.
+//! - Counts in the header that do not fit are a warning: rows and names rule.
+//! - Times that repeat are a warning, times that go back an error; two columns of one name are an
+//!   error.
+
+mod header;
+mod read;
+mod write;
+
+pub use read::{from_bytes, read};
+pub use write::write;

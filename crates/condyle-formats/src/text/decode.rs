@@ -1,0 +1,103 @@
+//! Bytes to text: UTF-8, UTF-16 with a byte order mark, or Latin-1 as the last resort.
+
+use std::borrow::Cow;
+
+use crate::diagnostic::{Diagnostic, Error, Place, Read};
+
+/// The largest text a reader takes, in bytes (512 MiB).
+pub const MAX_TEXT_BYTES: usize = 512 << 20;
+
+/// The text in some bytes, without its byte order mark.
+///
+/// UTF-8 is taken as it is, UTF-16 where a byte order mark announces it. Anything else is read as
+/// Latin-1, in which every byte is a letter, with the warning `text/encoding`.
+///
+/// # Errors
+///
+/// `text/size` if there are more than [`MAX_TEXT_BYTES`].
+///
+/// ```
+/// let read = condyle_formats::text::decode(b"caf\xe9")?;
+/// assert_eq!(read.value, "café");
+/// assert!(read.warned("text/encoding"));
+/// # Ok::<(), condyle_formats::Error>(())
+/// ```
+pub fn decode(bytes: &[u8]) -> Result<Read<Cow<'_, str>>, Error> {
+    check_size(bytes.len())?;
+    if let Some(rest) = bytes.strip_prefix(b"\xff\xfe") {
+        return Ok(utf16(rest, u16::from_le_bytes));
+    }
+    if let Some(rest) = bytes.strip_prefix(b"\xfe\xff") {
+        return Ok(utf16(rest, u16::from_be_bytes));
+    }
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    match std::str::from_utf8(bytes) {
+        Ok(text) => Ok(Read::clean(Cow::Borrowed(text))),
+        Err(error) => {
+            let wrong = error.valid_up_to();
+            let line = 1 + bytes[..wrong].iter().filter(|b| **b == b'\n').count();
+            let text: String = bytes.iter().map(|b| char::from(*b)).collect();
+            let warning = Diagnostic::new("text/encoding", "the text is not UTF-8")
+                .at(Place { line, column: 0, byte: Some(wrong as u64) })
+                .with_help("read as Latin-1; letters outside ASCII may be wrong");
+            Ok(Read { value: Cow::Owned(text), warnings: vec![warning] })
+        }
+    }
+}
+
+/// Refuses a text that no reader should hold in memory several times over.
+pub(crate) fn check_size(bytes: usize) -> Result<(), Error> {
+    if bytes <= MAX_TEXT_BYTES {
+        return Ok(());
+    }
+    Err(Error::new("text/size", format!("the text has {bytes} bytes"))
+        .with_help(format!("at most {MAX_TEXT_BYTES} bytes are read; split the file")))
+}
+
+fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Read<Cow<'_, str>> {
+    let (pairs, rest) = bytes.as_chunks::<2>();
+    let mut broken = !rest.is_empty();
+    let text = char::decode_utf16(pairs.iter().map(|pair| unit(*pair)))
+        .map(|c| {
+            c.unwrap_or_else(|_| {
+                broken = true;
+                char::REPLACEMENT_CHARACTER
+            })
+        })
+        .collect();
+    let mut read = Read::clean(Cow::Owned(text));
+    if broken {
+        read.warnings.push(
+            Diagnostic::new("text/encoding", "the UTF-16 text has broken characters")
+                .with_help("they were replaced by `\u{fffd}`"),
+        );
+    }
+    read
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn byte_order_marks_are_dropped() {
+        assert_eq!(decode(b"\xef\xbb\xbfab").unwrap().value, "ab");
+        assert_eq!(decode(b"\xff\xfea\0b\0").unwrap().value, "ab");
+        assert_eq!(decode(b"\xfe\xff\0a\0b").unwrap().value, "ab");
+    }
+
+    #[test]
+    fn half_a_character_is_a_warning() {
+        let read = decode(b"\xff\xfea\0b").unwrap();
+        assert_eq!(read.value, "a");
+        assert!(read.warned("text/encoding"));
+    }
+
+    #[test]
+    fn latin_1_names_the_line() {
+        let read = decode(b"one\ntwo \xb5m\n").unwrap();
+        assert_eq!(read.value, "one\ntwo µm\n");
+        assert_eq!(read.warnings[0].place.unwrap().line, 2);
+        assert_eq!(read.warnings[0].place.unwrap().byte, Some(8));
+    }
+}

@@ -1,0 +1,81 @@
+//! Lines that end with LF, CR LF or a lone CR.
+
+use crate::diagnostic::Place;
+
+/// One line without its end.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Line<'a> {
+    /// Counted from 1.
+    pub(crate) number: usize,
+    /// Offset of the first byte in the text.
+    pub(crate) start: usize,
+    pub(crate) text: &'a str,
+}
+
+impl<'a> Line<'a> {
+    /// The place of a part of this line; `part` must be a slice of its text.
+    pub(crate) fn place_of(&self, part: &str) -> Place {
+        let offset = (part.as_ptr() as usize).wrapping_sub(self.text.as_ptr() as usize);
+        let column = column_at(self.text, offset);
+        Place {
+            line: self.number,
+            column,
+            byte: (column > 0).then_some((self.start + offset) as u64),
+        }
+    }
+
+    /// The place of the line as a whole.
+    pub(crate) fn place(&self) -> Place {
+        Place { line: self.number, column: 0, byte: Some(self.start as u64) }
+    }
+
+    pub(crate) fn is_blank(&self) -> bool {
+        self.text.trim().is_empty()
+    }
+}
+
+/// The column, in characters counted from 1, of a byte offset in a line; 0 if it is not in it.
+pub(crate) fn column_at(line: &str, offset: usize) -> usize {
+    line.get(..offset).map_or(0, |before| before.chars().count() + 1)
+}
+
+/// The lines of a text, without a leading byte order mark.
+pub(crate) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> + Clone {
+    let bom = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
+    let mut start = bom;
+    let mut number = 0;
+    std::iter::from_fn(move || {
+        let rest = text.get(start..).filter(|rest| !rest.is_empty())?;
+        let end = rest.find(['\n', '\r']).unwrap_or(rest.len());
+        let (body, tail) = rest.split_at(end);
+        number += 1;
+        let line = Line { number, start, text: body };
+        let ending = match tail.as_bytes() {
+            [b'\r', b'\n', ..] => 2,
+            [] => 0,
+            _ => 1,
+        };
+        start += end + ending;
+        Some(line)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_of_line_end() {
+        let found: Vec<_> =
+            lines("\u{feff}a\r\nb\rc\n\nd").map(|l| (l.number, l.start, l.text)).collect();
+        assert_eq!(found, [(1, 3, "a"), (2, 6, "b"), (3, 8, "c"), (4, 10, ""), (5, 11, "d")]);
+        assert_eq!(lines("").count(), 0);
+        assert_eq!(lines("a\n").count(), 1);
+    }
+
+    #[test]
+    fn columns_count_characters() {
+        let line = lines("é\tabc").next().unwrap();
+        assert_eq!(line.place_of(&line.text[3..]), Place { line: 1, column: 3, byte: Some(3) });
+    }
+}

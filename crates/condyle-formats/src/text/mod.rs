@@ -1,0 +1,11 @@
+//! From bytes to lines, cells and numbers, for every format made of text.
+
+mod decode;
+mod line;
+mod number;
+
+pub(crate) use decode::check_size;
+pub use decode::{MAX_TEXT_BYTES, decode};
+pub(crate) use line::{Line, column_at, lines};
+pub use number::number;
+pub(crate) use number::{decimal, plain};

@@ -1,0 +1,397 @@
+//! The linear look over a text before it is parsed: bounds are checked and what many programs
+//! write although XML forbids it is put right.
+//!
+//! Repairs keep every byte where it was, so that places in messages are places in the file:
+//!
+//! - a colon in a name whose prefix nobody declared (`<HuntCrossleyForce::ContactParametersSet>`,
+//!   in 9 of 60 official OpenSim models) becomes `_`;
+//! - whatever stands before `<?xml`, and that declaration itself, becomes spaces;
+//! - a comment that holds `--` becomes spaces, and so does a closing tag that closes nothing
+//!   (OpenSim's own task sets end with a `</OpenSimDocument>` that they never opened).
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use super::{MAX_ATTRIBUTES, MAX_DEPTH, MAX_PREFIXES};
+use crate::diagnostic::{Diagnostic, Error, Place, Warnings};
+use crate::text::column_at;
+
+/// The text as a namespace-aware parser takes it.
+pub(super) fn repair<'a>(text: &'a str, warnings: &mut Warnings) -> Result<Cow<'a, str>, Error> {
+    let mut scan = Scan::new(text);
+    scan.run()?;
+    let Scan { colons, blanks, .. } = scan;
+    if colons.is_empty() && blanks.is_empty() {
+        return Ok(Cow::Borrowed(text));
+    }
+    let mut bytes = text.as_bytes().to_vec();
+    for (range, blank) in &blanks {
+        warnings.add(blank.code(), || blank.warning().at(place_at(text, range.start)));
+        for byte in bytes.get_mut(range.clone()).unwrap_or_default() {
+            if !matches!(*byte, b'\n' | b'\r') {
+                *byte = b' ';
+            }
+        }
+    }
+    let mut places = Places::new(text);
+    for name in &colons {
+        let place = places.at(name.start);
+        warnings.add("xml/prefix", || {
+            let written = text.get(name.clone()).unwrap_or_default();
+            Diagnostic::new("xml/prefix", format!("`{written}` has a prefix nobody declared"))
+                .at(place)
+                .with_help(format!("read as `{}`", written.replace(':', "_")))
+        });
+        for byte in bytes.get_mut(name.clone()).unwrap_or_default() {
+            if *byte == b':' {
+                *byte = b'_';
+            }
+        }
+    }
+    // Whole characters were replaced by ASCII, so this never fails.
+    String::from_utf8(bytes)
+        .map(Cow::Owned)
+        .map_err(|_| Error::new("xml/encoding", "the text could not be repaired"))
+}
+
+/// What becomes spaces.
+#[derive(Debug, Clone, Copy)]
+enum Blank {
+    BeforeDeclaration,
+    Comment,
+    StrayEnd,
+}
+
+impl Blank {
+    fn code(self) -> &'static str {
+        match self {
+            Self::BeforeDeclaration => "xml/before-declaration",
+            Self::Comment => "xml/comment",
+            Self::StrayEnd => "xml/stray-end",
+        }
+    }
+
+    fn warning(self) -> Diagnostic {
+        let (message, help) = match self {
+            Self::BeforeDeclaration => {
+                ("the file does not start with `<?xml`", "what stands before it was skipped")
+            }
+            Self::Comment => ("a comment holds `--`", "the comment was skipped"),
+            Self::StrayEnd => ("a closing tag closes nothing", "it was skipped"),
+        };
+        Diagnostic::new(self.code(), message).with_help(help)
+    }
+}
+
+/// Line and column of one byte offset, counted from the start of the text.
+pub(super) fn place_at(text: &str, offset: usize) -> Place {
+    Places::new(text).at(offset)
+}
+
+/// Lines and columns of rising offsets, found in one pass over the text.
+pub(super) struct Places<'a> {
+    text: &'a str,
+    line: usize,
+    line_start: usize,
+    reached: usize,
+}
+
+impl<'a> Places<'a> {
+    pub(super) fn new(text: &'a str) -> Self {
+        Self { text, line: 1, line_start: 0, reached: 0 }
+    }
+
+    /// The place of an offset that is not before the last one asked for.
+    pub(super) fn at(&mut self, offset: usize) -> Place {
+        let bytes = self.text.as_bytes();
+        while self.reached < offset {
+            let Some(byte) = bytes.get(self.reached) else { break };
+            let ends = match byte {
+                b'\n' => true,
+                b'\r' => bytes.get(self.reached + 1) != Some(&b'\n'),
+                _ => false,
+            };
+            self.reached += 1;
+            if ends {
+                self.line += 1;
+                self.line_start = self.reached;
+            }
+        }
+        // A model on one line would make counting characters quadratic: beyond a width that
+        // nobody reads, columns are bytes.
+        let width = offset.saturating_sub(self.line_start);
+        let column = if width > 4096 {
+            width + 1
+        } else {
+            self.text.get(self.line_start..).map_or(0, |line| column_at(line, width))
+        };
+        Place { line: self.line, column, byte: Some(offset as u64) }
+    }
+}
+
+/// What one pass over the markup finds.
+struct Scan<'a> {
+    text: &'a str,
+    at: usize,
+    depth: usize,
+    /// Prefixes in scope, each with the depth of the element that declared it.
+    prefixes: Vec<(usize, &'a str)>,
+    /// Names whose colons must go.
+    colons: Vec<Range<usize>>,
+    blanks: Vec<(Range<usize>, Blank)>,
+}
+
+impl<'a> Scan<'a> {
+    fn new(text: &'a str) -> Self {
+        let (colons, blanks, prefixes) = (Vec::new(), Vec::new(), Vec::new());
+        Self { text, at: 0, depth: 0, prefixes, colons, blanks }
+    }
+
+    /// Walks from tag to tag. Broken markup ends the walk: the parser says what is wrong.
+    fn run(&mut self) -> Result<(), Error> {
+        self.declaration();
+        while let Some(found) = self.text.get(self.at..).and_then(|rest| rest.find('<')) {
+            self.at += found;
+            let rest = &self.text[self.at..];
+            let known = if rest.starts_with("<!--") {
+                let start = self.at;
+                let whole = self.skip_past(4, "-->");
+                let inside = self.text.get(start + 4..self.at.saturating_sub(3));
+                if whole && inside.is_some_and(|c| c.contains("--") || c.ends_with('-')) {
+                    self.blanks.push((start..self.at, Blank::Comment));
+                }
+                whole
+            } else if rest.starts_with("<![CDATA[") {
+                self.skip_past(9, "]]>")
+            } else if rest.starts_with("<?") {
+                self.skip_past(2, "?>")
+            } else if rest.starts_with("<!") {
+                return Err(Error::new("xml/dtd", "the file has a document type declaration")
+                    .at(place_at(self.text, self.at))
+                    .with_help("remove `<!DOCTYPE ...>`; entities are not expanded"));
+            } else if rest.starts_with("</") {
+                self.end_tag()
+            } else {
+                self.start_tag()?
+            };
+            if !known {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Blanks what precedes `<?xml`, together with the declaration, where something does.
+    fn declaration(&mut self) {
+        let before = |found: usize| self.text.get(..found).unwrap_or_default();
+        let Some(found) = self.text.find("<?xml").filter(|f| *f > 0) else { return };
+        if before(found).contains('<') {
+            return;
+        }
+        if let Some(end) = self.text[found..].find("?>") {
+            self.blanks.push((0..found + end + 2, Blank::BeforeDeclaration));
+            self.at = found + end + 2;
+        }
+    }
+
+    fn skip_past(&mut self, opening: usize, closing: &str) -> bool {
+        let from = self.at + opening;
+        match self.text.get(from..).and_then(|rest| rest.find(closing)) {
+            Some(found) => {
+                self.at = from + found + closing.len();
+                true
+            }
+            None => false,
+        }
+    }
+
+    fn byte(&self) -> Option<u8> {
+        self.text.as_bytes().get(self.at).copied()
+    }
+
+    fn skip_while(&mut self, accept: impl Fn(u8) -> bool) -> Range<usize> {
+        let start = self.at;
+        while self.byte().is_some_and(&accept) {
+            self.at += 1;
+        }
+        start..self.at
+    }
+
+    fn name(&mut self) -> Range<usize> {
+        self.skip_while(|b| !matches!(b, b' ' | b'\t' | b'\r' | b'\n' | b'/' | b'>' | b'=' | b'<'))
+    }
+
+    fn space(&mut self) {
+        self.skip_while(|b| matches!(b, b' ' | b'\t' | b'\r' | b'\n'));
+    }
+
+    /// Passes `<name a="b" c='d'>`; false if it is broken.
+    fn start_tag(&mut self) -> Result<bool, Error> {
+        let start = self.at;
+        self.at += 1;
+        self.depth += 1;
+        let mut names = vec![self.name()];
+        let closed = loop {
+            self.space();
+            match self.byte() {
+                Some(b'>') => break false,
+                Some(b'/') if self.text.as_bytes().get(self.at + 1) == Some(&b'>') => break true,
+                None | Some(b'/' | b'<' | b'=') => return Ok(false),
+                Some(_) => {}
+            }
+            let name = self.name();
+            self.space();
+            if self.byte() != Some(b'=') {
+                return Ok(false);
+            }
+            self.at += 1;
+            self.space();
+            let Some(quote @ (b'"' | b'\'')) = self.byte() else { return Ok(false) };
+            self.at += 1;
+            self.skip_while(|b| b != quote);
+            if self.byte().is_none() {
+                return Ok(false);
+            }
+            self.at += 1;
+            if let Some(prefix) = self.text.get(name.clone()).and_then(|n| n.strip_prefix("xmlns:"))
+                && !prefix.is_empty()
+            {
+                self.prefixes.push((self.depth, prefix));
+            }
+            names.push(name);
+            self.check_bounds(start, names.len())?;
+        };
+        self.check_bounds(start, names.len())?;
+        for (index, name) in names.into_iter().enumerate() {
+            self.judge(name, index > 0);
+        }
+        self.at += if closed { 2 } else { 1 };
+        if closed {
+            self.leave();
+        }
+        Ok(true)
+    }
+
+    /// Passes `</name>`; false if it is broken.
+    fn end_tag(&mut self) -> bool {
+        let start = self.at;
+        self.at += 2;
+        let name = self.name();
+        self.space();
+        if self.byte() != Some(b'>') {
+            return false;
+        }
+        self.at += 1;
+        if self.depth == 0 {
+            self.blanks.push((start..self.at, Blank::StrayEnd));
+        } else {
+            self.judge(name, false);
+            self.leave();
+        }
+        true
+    }
+
+    fn leave(&mut self) {
+        while self.prefixes.last().is_some_and(|(depth, _)| *depth >= self.depth) {
+            self.prefixes.pop();
+        }
+        self.depth = self.depth.saturating_sub(1);
+    }
+
+    /// Notes a name whose colons a namespace-aware parser would refuse.
+    fn judge(&mut self, name: Range<usize>, attribute: bool) {
+        let Some(written) = self.text.get(name.clone()).filter(|n| n.contains(':')) else { return };
+        let fine = match written.split_once(':') {
+            Some((prefix, local)) if !local.is_empty() && !local.contains(':') => {
+                prefix == "xml"
+                    || (attribute && prefix == "xmlns")
+                    || self.prefixes.iter().any(|(_, declared)| *declared == prefix)
+            }
+            _ => false,
+        };
+        if !fine {
+            self.colons.push(name);
+        }
+    }
+
+    fn check_bounds(&self, start: usize, names: usize) -> Result<(), Error> {
+        let (code, message) = if self.depth > MAX_DEPTH {
+            ("xml/depth", format!("elements are nested more than {MAX_DEPTH} deep"))
+        } else if names > MAX_ATTRIBUTES {
+            ("xml/attributes", format!("an element has more than {MAX_ATTRIBUTES} attributes"))
+        } else if self.prefixes.len() > MAX_PREFIXES {
+            ("xml/prefixes", format!("more than {MAX_PREFIXES} namespace prefixes are in scope"))
+        } else {
+            return Ok(());
+        };
+        Err(Error::new(code, message)
+            .at(place_at(self.text, start))
+            .with_help("no model or setup file needs that; is the file damaged?"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn repaired(text: &str) -> (String, Vec<&'static str>) {
+        let mut warnings = Warnings::default();
+        let text = repair(text, &mut warnings).unwrap().into_owned();
+        (text, warnings.finish().iter().map(|w| w.code).collect())
+    }
+
+    #[test]
+    fn undeclared_prefixes_lose_their_colon() {
+        let (text, codes) = repaired("<a><H::P x:y=\"u:v\">t:t<!--c:d--></H::P></a>");
+        assert_eq!(text, "<a><H__P x_y=\"u:v\">t:t<!--c:d--></H__P></a>");
+        assert_eq!(codes, ["xml/prefix"; 3]);
+    }
+
+    #[test]
+    fn declared_prefixes_stay_while_in_scope() {
+        let text = "<r><p:a xmlns:p=\"u\" p:b=\"1\"><p:c/></p:a><p:d/><e xml:id=\"i\"/></r>";
+        let (repaired, codes) = repaired(text);
+        assert_eq!(repaired, text.replace("<p:d/>", "<p_d/>"));
+        assert_eq!(codes, ["xml/prefix"]);
+    }
+
+    #[test]
+    fn bytes_before_the_declaration_become_spaces() {
+        let (text, codes) = repaired("\n é <?xml version=\"1.0\"?>\n<a/>");
+        assert_eq!(text.trim(), "<a/>");
+        assert_eq!(text.len(), "\n é <?xml version=\"1.0\"?>\n<a/>".len());
+        assert_eq!(text.lines().count(), 3);
+        assert_eq!(codes, ["xml/before-declaration"]);
+    }
+
+    #[test]
+    fn untidy_comments_are_skipped() {
+        let (text, codes) = repaired("<a><!-- x -- y\n --><b/><!-- x ---></a>");
+        assert_eq!(text.replace(' ', ""), "<a>\n<b/></a>");
+        assert_eq!(codes, ["xml/comment"; 2]);
+    }
+
+    #[test]
+    fn closing_tags_that_close_nothing_are_skipped() {
+        let (text, codes) = repaired("<a><b/></a>\n</OpenSimDocument >\n");
+        assert_eq!(text.trim_end(), "<a><b/></a>");
+        assert_eq!(codes, ["xml/stray-end"]);
+    }
+
+    #[test]
+    fn cdata_and_instructions_are_not_markup() {
+        let text = "<a><![CDATA[<x:y>]]><?p <q:r?></a>";
+        assert_eq!(repaired(text), (text.to_owned(), vec![]));
+    }
+
+    #[test]
+    fn depth_is_bounded() {
+        let mut warnings = Warnings::default();
+        let fine = "<a>".repeat(MAX_DEPTH) + &"</a>".repeat(MAX_DEPTH);
+        assert!(repair(&fine, &mut warnings).is_ok());
+        let deep = "<a>".repeat(MAX_DEPTH + 1);
+        let error = repair(&deep, &mut warnings).unwrap_err();
+        assert_eq!(error.code(), "xml/depth");
+        assert_eq!(error.place().unwrap().column, 3 * MAX_DEPTH + 1);
+    }
+}

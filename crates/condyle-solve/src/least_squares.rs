@@ -1,0 +1,450 @@
+//! Bounded nonlinear least squares with equalities, by Gauss-Newton steps in a trust box.
+//!
+//! Minimises F(x) over x within bounds, subject to c(x) = 0 and g(x) ≥ 0, where x may live on a
+//! manifold: the caller applies steps. Each iteration solves the quadratic program
+//!
+//! ```text
+//! min ∇Fᵀd + ½ dᵀHd   with   bounds on x ⊕ d,  |dᵢ| ≤ Δ·scaleᵢ,  c + C d = 0,  g + G d ≥ 0
+//! ```
+//!
+//! and accepts the step if the merit F + μ(Σ|c| + Σ max(0, -g)) falls. Bounds are met exactly and
+//! sit in the active set, which is kept from one solve to the next: a limb at the end of its range
+//! costs nothing extra. When the model promises less than `tolerance · F`, the last step is still
+//! tried, so that directions that F hardly feels come to rest where the caller's prior wants them.
+
+use crate::quadratic::{QuadraticProgram, Status, Workspace};
+
+/// A smooth problem at a point that moves by steps.
+pub trait Problem {
+    /// Evaluates at the current point moved by `step`; this becomes the trial point.
+    ///
+    /// Returns F and fills the values of the equalities and inequalities there.
+    fn evaluate(&mut self, step: &[f64], equalities: &mut [f64], inequalities: &mut [f64]) -> f64;
+
+    /// Makes the trial point the current one.
+    fn accept(&mut self);
+
+    /// Fills the quadratic model at the current point, which was the last trial point accepted.
+    fn linearise(&mut self, local: &mut LocalModel);
+}
+
+/// The quadratic model of a problem at a point, row-major.
+#[derive(Clone, Debug)]
+pub struct LocalModel {
+    /// Second derivative, n × n; only the lower triangle is read.
+    pub hessian: Vec<f64>,
+    /// First derivative.
+    pub gradient: Vec<f64>,
+    /// Least value of each component of a step.
+    pub lower: Vec<f64>,
+    /// Largest value of each component of a step.
+    pub upper: Vec<f64>,
+    /// Derivatives of the equalities.
+    pub equality_rows: Vec<f64>,
+    /// Derivatives of the inequalities.
+    pub inequality_rows: Vec<f64>,
+}
+
+/// When to stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Stop when the model promises to lower F by less than this fraction of it.
+    pub tolerance: f64,
+    /// A decrease of F below this is nothing, whatever F is.
+    pub floor: f64,
+    /// Largest violation of an equality or inequality at the end.
+    pub feasibility: f64,
+    /// Most iterations.
+    pub iterations: u32,
+    /// The trust box at the start, in units of `scale`.
+    pub trust: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { tolerance: 1e-6, floor: 1e-18, feasibility: 1e-8, iterations: 60, trust: 0.5 }
+    }
+}
+
+/// How a solve ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// The model promises no further decrease.
+    Converged,
+    /// No step lowers the merit any more, though the model promises one.
+    Stalled,
+    /// The iterations were used up.
+    IterationLimit,
+    /// A value was not finite.
+    NotFinite,
+    /// Equalities or inequalities could not be met.
+    Infeasible,
+}
+
+/// The end of a solve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Summary {
+    /// F at the end.
+    pub objective: f64,
+    /// Largest |c| and largest -g at the end.
+    pub violation: f64,
+    /// Iterations used.
+    pub iterations: u32,
+    /// Why it ended.
+    pub stop: Stop,
+}
+
+/// Buffers of a solver, kept from one solve to the next with their active set.
+#[derive(Debug)]
+pub struct Solver {
+    local: LocalModel,
+    program: Workspace,
+    step: Vec<f64>,
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    scale: Vec<f64>,
+    equalities: Vec<f64>,
+    inequalities: Vec<f64>,
+    trial_equalities: Vec<f64>,
+    trial_inequalities: Vec<f64>,
+    equality_values: Vec<f64>,
+    inequality_values: Vec<f64>,
+}
+
+/// The trust box never grows beyond this many units of `scale`.
+const WIDEST: f64 = 2.0;
+/// A trust box narrower than this cannot lower anything.
+const NARROWEST: f64 = 1e-9;
+
+impl Solver {
+    /// Buffers for problems of this shape; `scale` is the size of a natural step in each direction.
+    pub fn new(scale: &[f64], equalities: usize, inequalities: usize) -> Self {
+        let n = scale.len();
+        Self {
+            local: LocalModel {
+                hessian: vec![0.0; n * n],
+                gradient: vec![0.0; n],
+                lower: vec![0.0; n],
+                upper: vec![0.0; n],
+                equality_rows: vec![0.0; n * equalities],
+                inequality_rows: vec![0.0; n * inequalities],
+            },
+            program: Workspace::new(n, equalities, inequalities),
+            step: vec![0.0; n],
+            lower: vec![0.0; n],
+            upper: vec![0.0; n],
+            scale: scale.to_vec(),
+            equalities: vec![0.0; equalities],
+            inequalities: vec![0.0; inequalities],
+            trial_equalities: vec![0.0; equalities],
+            trial_inequalities: vec![0.0; inequalities],
+            equality_values: vec![0.0; equalities],
+            inequality_values: vec![0.0; inequalities],
+        }
+    }
+
+    /// Forgets the active set: the next solve depends on its own problem alone.
+    pub fn forget(&mut self) {
+        self.program.forget();
+    }
+
+    /// The model at the last point that was linearised.
+    pub fn local(&self) -> &LocalModel {
+        &self.local
+    }
+
+    /// Minimises a problem from its current point, where it ends.
+    ///
+    /// Nothing is allocated.
+    pub fn minimise<P: Problem>(&mut self, problem: &mut P, options: &Options) -> Summary {
+        self.step.fill(0.0);
+        let mut objective =
+            problem.evaluate(&self.step, &mut self.equalities, &mut self.inequalities);
+        problem.accept();
+        let mut violation = violation(&self.equalities, &self.inequalities);
+        let mut summary =
+            Summary { objective, violation, iterations: 0, stop: Stop::IterationLimit };
+        if !(objective.is_finite() && violation.is_finite()) {
+            summary.stop = Stop::NotFinite;
+            return summary;
+        }
+        let mut trust = options.trust;
+        let mut penalty = 0.0_f64;
+        let mut fresh = true;
+        while summary.iterations < options.iterations {
+            summary.iterations += 1;
+            if fresh {
+                problem.linearise(&mut self.local);
+                fresh = false;
+            }
+            let Some(relaxed) = self.propose(trust) else {
+                summary.stop = Stop::NotFinite;
+                break;
+            };
+            penalty = penalty.max(2.0 * self.largest_multiplier());
+            let promised = self.promise();
+            let infeasible = sum_violation(&self.equalities, &self.inequalities);
+            let small = promised <= options.tolerance * objective + options.floor;
+            let last = small && !relaxed && violation <= options.feasibility;
+            let trial = problem.evaluate(
+                &self.step,
+                &mut self.trial_equalities,
+                &mut self.trial_inequalities,
+            );
+            let trial_infeasible = sum_violation(&self.trial_equalities, &self.trial_inequalities);
+            let gained = objective - trial + penalty * (infeasible - trial_infeasible);
+            let expected = promised + penalty * infeasible * if relaxed { 0.1 } else { 1.0 };
+            // Near the end the gain drowns in rounding; a step that costs nothing is taken.
+            let noise = 1e-14 * objective + options.floor;
+            if gained.is_finite() && gained >= 1e-4 * expected - noise {
+                problem.accept();
+                fresh = true;
+                objective = trial;
+                std::mem::swap(&mut self.equalities, &mut self.trial_equalities);
+                std::mem::swap(&mut self.inequalities, &mut self.trial_inequalities);
+                violation = self::violation(&self.equalities, &self.inequalities);
+                if gained > 0.75 * expected {
+                    trust = (2.0 * trust).min(WIDEST);
+                } else if gained < 0.25 * expected {
+                    trust *= 0.5;
+                }
+                if last && violation <= options.feasibility {
+                    summary.stop = Stop::Converged;
+                    break;
+                }
+            } else if last {
+                summary.stop = Stop::Converged;
+                break;
+            } else {
+                trust = 0.25 * trust.min(self.step_size());
+                if trust < NARROWEST {
+                    summary.stop = if violation > options.feasibility {
+                        Stop::Infeasible
+                    } else {
+                        Stop::Stalled
+                    };
+                    break;
+                }
+            }
+        }
+        summary.objective = objective;
+        summary.violation = violation;
+        if violation > options.feasibility && summary.stop == Stop::IterationLimit {
+            summary.stop = Stop::Infeasible;
+        }
+        summary
+    }
+
+    /// Solves the quadratic program within the trust box; whether the equalities were relaxed.
+    ///
+    /// A box too narrow to reach the equalities asks for a part of the way only.
+    fn propose(&mut self, trust: f64) -> Option<bool> {
+        for i in 0..self.step.len() {
+            let reach = trust * self.scale[i];
+            self.lower[i] = self.local.lower[i].max(-reach).min(0.0);
+            self.upper[i] = self.local.upper[i].min(reach).max(0.0);
+        }
+        let mut ridge = 1e-12;
+        loop {
+            match self.solve_program() {
+                Ok(relaxed) => return Some(relaxed),
+                // Rounding ate a weak direction: stiffen all a little and try again.
+                Err(Status::NotPositiveDefinite { .. }) if ridge < 1e-3 => {
+                    let n = self.step.len();
+                    let hessian = &mut self.local.hessian;
+                    let largest = (0..n).map(|i| hessian[i * n + i]).fold(0.0, f64::max);
+                    (0..n).for_each(|i| hessian[i * n + i] += ridge * largest + 1e-30);
+                    ridge *= 100.0;
+                }
+                Err(_) => return None,
+            }
+        }
+    }
+
+    /// Solves the program as it stands; whether its rows had to be relaxed.
+    fn solve_program(&mut self) -> Result<bool, Status> {
+        for share in [1.0, 0.1, 0.0] {
+            for (value, c) in self.equality_values.iter_mut().zip(&self.equalities) {
+                *value = -share * c;
+            }
+            for (value, g) in self.inequality_values.iter_mut().zip(&self.inequalities) {
+                *value = if *g < 0.0 { -share * g } else { -g };
+            }
+            let program = QuadraticProgram::bounded(
+                &self.local.hessian,
+                &self.local.gradient,
+                &self.lower,
+                &self.upper,
+            )
+            .with_equalities(&self.local.equality_rows, &self.equality_values)
+            .with_inequalities(&self.local.inequality_rows, &self.inequality_values);
+            let solution = self.program.solve(&program);
+            match solution.status() {
+                Status::Solved => {
+                    self.step.copy_from_slice(solution.d());
+                    return Ok(share < 1.0);
+                }
+                Status::Infeasible | Status::IterationLimit => {}
+                failed => return Err(failed),
+            }
+        }
+        self.step.fill(0.0);
+        Ok(true)
+    }
+
+    /// By how much the model says the step lowers F.
+    fn promise(&self) -> f64 {
+        let n = self.step.len();
+        let mut sum = 0.0;
+        for i in 0..n {
+            let row = &self.local.hessian[i * n..i * n + i];
+            let mut product = 0.5 * self.local.hessian[i * n + i] * self.step[i];
+            for (h, d) in row.iter().zip(&self.step) {
+                product += h * d;
+            }
+            sum -= self.step[i] * (self.local.gradient[i] + product);
+        }
+        sum
+    }
+
+    fn largest_multiplier(&self) -> f64 {
+        let solution = self.program.solution();
+        let multipliers =
+            solution.equality_multipliers().iter().chain(solution.inequality_multipliers());
+        multipliers.fold(0.0, |m: f64, y| m.max(y.abs()))
+    }
+
+    fn step_size(&self) -> f64 {
+        self.step.iter().zip(&self.scale).map(|(d, s)| d.abs() / s).fold(0.0, f64::max)
+    }
+}
+
+fn violation(equalities: &[f64], inequalities: &[f64]) -> f64 {
+    let worst =
+        equalities.iter().fold(0.0, |m: f64, c| if c.is_nan() { f64::NAN } else { m.max(c.abs()) });
+    inequalities.iter().fold(worst, |m, g| m.max(-g))
+}
+
+fn sum_violation(equalities: &[f64], inequalities: &[f64]) -> f64 {
+    equalities.iter().map(|c| c.abs()).sum::<f64>()
+        + inequalities.iter().map(|g| (-g).max(0.0)).sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A planar arm of three unit links that reaches for a point, angles within bounds; the middle
+    /// joint may be tied to a line by an equality.
+    struct Arm {
+        angles: [f64; 3],
+        trial: [f64; 3],
+        goal: [f64; 2],
+        bounds: [(f64, f64); 3],
+        tie: Option<f64>,
+    }
+
+    impl Arm {
+        fn points(angles: &[f64; 3]) -> [[f64; 2]; 3] {
+            let (mut heading, mut at) = (0.0, [0.0; 2]);
+            angles.map(|a| {
+                heading += a;
+                at = [at[0] + f64::cos(heading), at[1] + f64::sin(heading)];
+                at
+            })
+        }
+    }
+
+    impl Problem for Arm {
+        fn evaluate(&mut self, step: &[f64], equalities: &mut [f64], _: &mut [f64]) -> f64 {
+            for i in 0..3 {
+                self.trial[i] = self.angles[i] + step[i];
+            }
+            let points = Self::points(&self.trial);
+            if let Some(height) = self.tie {
+                equalities[0] = points[1][1] - height;
+            }
+            let e = [points[2][0] - self.goal[0], points[2][1] - self.goal[1]];
+            e[0] * e[0] + e[1] * e[1] + 1e-9 * self.trial.iter().map(|a| a * a).sum::<f64>()
+        }
+
+        fn accept(&mut self) {
+            self.angles = self.trial;
+        }
+
+        fn linearise(&mut self, local: &mut LocalModel) {
+            let points = Self::points(&self.angles);
+            let origin = |j: usize| if j == 0 { [0.0; 2] } else { points[j - 1] };
+            let e = [points[2][0] - self.goal[0], points[2][1] - self.goal[1]];
+            let column = |j: usize, tip: [f64; 2]| [origin(j)[1] - tip[1], tip[0] - origin(j)[0]];
+            for i in 0..3 {
+                let a = column(i, points[2]);
+                local.gradient[i] = 2.0 * (a[0] * e[0] + a[1] * e[1]) + 2e-9 * self.angles[i];
+                for j in 0..3 {
+                    let b = column(j, points[2]);
+                    local.hessian[3 * i + j] =
+                        2.0 * (a[0] * b[0] + a[1] * b[1]) + if i == j { 2e-9 } else { 0.0 };
+                }
+                local.lower[i] = self.bounds[i].0 - self.angles[i];
+                local.upper[i] = self.bounds[i].1 - self.angles[i];
+                if self.tie.is_some() {
+                    local.equality_rows[i] = if i < 2 { column(i, points[1])[1] } else { 0.0 };
+                }
+            }
+        }
+    }
+
+    const WIDE: (f64, f64) = (-3.0, 3.0);
+
+    #[test]
+    fn a_reachable_goal_is_reached() {
+        let mut arm = Arm {
+            angles: [0.1; 3],
+            trial: [0.0; 3],
+            goal: [0.5, 1.2],
+            bounds: [WIDE; 3],
+            tie: None,
+        };
+        let summary = Solver::new(&[1.0; 3], 0, 0).minimise(&mut arm, &Options::default());
+        assert_eq!(summary.stop, Stop::Converged);
+        // Only the prior of 1e-9 · Σ angle² is left.
+        assert!(summary.objective < 1e-8, "{summary:?}");
+    }
+
+    #[test]
+    fn a_goal_out_of_reach_leaves_the_gap() {
+        let mut arm = Arm {
+            angles: [0.3, -0.2, 0.4],
+            trial: [0.0; 3],
+            goal: [3.0, 4.0],
+            bounds: [WIDE; 3],
+            tie: None,
+        };
+        let summary = Solver::new(&[1.0; 3], 0, 0).minimise(&mut arm, &Options::default());
+        // The straight arm of length 3 points at the goal at distance 5.
+        assert!((summary.objective - 4.0).abs() < 1e-5, "{summary:?}");
+    }
+
+    #[test]
+    fn bounds_hold_exactly_and_equalities_closely() {
+        let bounds = [(0.0, 0.4), (-0.1, 0.1), (0.0, 3.0)];
+        let mut arm =
+            Arm { angles: [0.2, 0.0, 1.0], trial: [0.0; 3], goal: [-1.0, 2.0], bounds, tie: None };
+        let mut solver = Solver::new(&[1.0; 3], 0, 0);
+        solver.minimise(&mut arm, &Options::default());
+        assert_eq!(arm.angles[0], 0.4);
+        assert_eq!(arm.angles[1], 0.1);
+
+        let mut tied = Arm {
+            angles: [0.2, 0.0, 1.0],
+            trial: [0.0; 3],
+            goal: [1.0, 2.0],
+            bounds: [WIDE; 3],
+            tie: Some(1.1),
+        };
+        let summary = Solver::new(&[1.0; 3], 1, 0).minimise(&mut tied, &Options::default());
+        assert_eq!(summary.stop, Stop::Converged);
+        assert!((Arm::points(&tied.angles)[1][1] - 1.1).abs() < 1e-8);
+        assert!(summary.objective < 1e-8, "the goal is within one link of the tied joint");
+    }
+}

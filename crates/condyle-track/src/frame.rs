@@ -1,0 +1,290 @@
+//! One frame: where to start, what came out.
+
+use crate::problem::FrameProblem;
+use crate::tracker::{Scratch, Tracker};
+use condyle_math::Vec3;
+use condyle_model::{CoordinateKind, Mode};
+use condyle_solve::least_squares::{self, Stop};
+use std::f64::consts::FRAC_PI_2;
+
+/// How a frame ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrameStatus {
+    /// The minimum was found.
+    Solved,
+    /// The solver stopped before it was sure; the posture is the best it met.
+    Uncertain,
+    /// A loop, or the range of a coupled coordinate, could not be met.
+    Infeasible,
+    /// No marker with a positive weight was seen; the posture is that of the start.
+    NoMarkers,
+}
+
+impl FrameStatus {
+    /// Whether the answer can be used as it is.
+    pub fn is_solved(self) -> bool {
+        self == Self::Solved
+    }
+
+    /// The word for it in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Solved => "solved",
+            Self::Uncertain => "uncertain",
+            Self::Infeasible => "infeasible",
+            Self::NoMarkers => "no markers",
+        }
+    }
+}
+
+/// The posture of one frame, and how near it comes to the markers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameAnswer {
+    /// The stored numbers of all coordinates, coupled ones as their leaders determine them.
+    pub coordinates: Vec<f64>,
+    /// F, without the prior.
+    pub objective: f64,
+    /// Σ w |e|² in m².
+    pub weighted_squares: f64,
+    /// Distance of each marker task in metres; NaN where the marker is not seen or has no weight.
+    pub marker_errors: Vec<f64>,
+    /// Largest loop error in metres or radians.
+    pub closure_error: f64,
+    /// How it ended.
+    pub status: FrameStatus,
+    /// Iterations of the solver, all starts together.
+    pub iterations: u32,
+}
+
+impl FrameAnswer {
+    /// Root mean square of the marker errors in metres, unweighted; 0 without markers.
+    pub fn rms(&self) -> f64 {
+        let seen = self.marker_errors.iter().filter(|e| e.is_finite());
+        let (sum, n) = seen.fold((0.0, 0), |(sum, n), e| (sum + e * e, n + 1));
+        if n == 0 { 0.0 } else { (sum / f64::from(n)).sqrt() }
+    }
+
+    /// Largest marker error in metres.
+    pub fn max(&self) -> f64 {
+        self.marker_errors.iter().copied().filter(|e| e.is_finite()).fold(0.0, f64::max)
+    }
+}
+
+impl Tracker<'_> {
+    /// The posture nearest to the markers of one frame, from one or several starts.
+    ///
+    /// `targets` has one place for each marker task, `None` where it is not seen; `frame` chooses
+    /// the values of coordinate tasks. Each start has the stored numbers of all coordinates; the
+    /// best minimum wins, an earlier start on a tie. Without starts the defaults are one.
+    pub fn solve_frame(
+        &self,
+        scratch: &mut Scratch,
+        targets: &[Option<[f64; 3]>],
+        frame: usize,
+        starts: &[&[f64]],
+    ) -> FrameAnswer {
+        let defaults: &[f64] = &self.defaults;
+        let alone = [defaults];
+        let starts = if starts.is_empty() { &alone[..] } else { starts };
+        let mut best: Option<FrameAnswer> = None;
+        let mut iterations = 0;
+        for start in starts {
+            scratch.solver.forget();
+            let answer = self.descend(scratch, targets, frame, start, None);
+            iterations += answer.iterations;
+            let wins = best.as_ref().is_none_or(|best| better(&answer, best));
+            if wins {
+                best = Some(answer);
+            }
+        }
+        let mut best =
+            best.unwrap_or_else(|| self.descend(scratch, targets, frame, defaults, None));
+        best.iterations = iterations;
+        best
+    }
+
+    /// One descent from one start, keeping the solver's active set of the last descent.
+    pub(crate) fn descend(
+        &self,
+        scratch: &mut Scratch,
+        targets: &[Option<[f64; 3]>],
+        frame: usize,
+        start: &[f64],
+        factors: Option<&[f64]>,
+    ) -> FrameAnswer {
+        let Scratch { pose, jacobian, closures, solver, buffers } = scratch;
+        buffers.current.copy_from_slice(start);
+        self.hold(&mut buffers.current);
+        buffers.tangent.fill(0.0);
+        let mut problem = FrameProblem {
+            tracker: self,
+            targets,
+            frame,
+            pose,
+            jacobian,
+            closures,
+            buffers,
+            total_weight: 0.0,
+        };
+        problem.weigh(factors);
+        let seen = problem.total_weight > 0.0;
+        let mut iterations = 0;
+        let mut status = FrameStatus::NoMarkers;
+        if seen || !self.tasks.coordinates.is_empty() {
+            let options = least_squares::Options {
+                tolerance: self.options.tolerance,
+                ..least_squares::Options::default()
+            };
+            let summary = solver.minimise(&mut problem, &options);
+            iterations = summary.iterations;
+            status = match summary.stop {
+                Stop::Converged => FrameStatus::Solved,
+                Stop::Infeasible => FrameStatus::Infeasible,
+                Stop::Stalled | Stop::IterationLimit | Stop::NotFinite => FrameStatus::Uncertain,
+            };
+            if !seen {
+                status = FrameStatus::NoMarkers;
+            }
+        }
+        self.measure(problem, iterations, status)
+    }
+
+    /// Puts locked coordinates at their defaults and the others within their bounds.
+    fn hold(&self, stored: &mut [f64]) {
+        for id in self.model.coordinate_ids() {
+            let coordinate = self.model.coordinate(id);
+            if coordinate.locked {
+                let place = self.model.stored_range(id);
+                stored[place.clone()].copy_from_slice(&self.defaults[place]);
+            }
+        }
+        for &(place, lower, upper) in self.stored.iter().flatten() {
+            stored[place] = stored[place].max(lower).min(upper);
+        }
+    }
+
+    /// Evaluates the final posture plainly and measures it.
+    fn measure(
+        &self,
+        mut problem: FrameProblem<'_, '_>,
+        iterations: u32,
+        status: FrameStatus,
+    ) -> FrameAnswer {
+        let evaluated = self.program.evaluate(&problem.buffers.current, Mode::Open, problem.pose);
+        debug_assert!(evaluated.is_ok(), "buffers are made for this program");
+        problem.weigh(None);
+        let weighted_squares = problem.measure();
+        let mut objective = problem.task_cost();
+        if problem.total_weight > 0.0 {
+            objective += weighted_squares / problem.total_weight;
+        }
+        let mut closure_error = 0.0;
+        if !problem.closures.is_empty() {
+            problem.closures.update(self.model, &self.program, problem.pose, None);
+            closure_error = problem.closures.residuals.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
+            if !self.closures_exact {
+                let weight = self.tasks.closure_weight.unwrap_or(0.0);
+                objective += weight * problem.closures.residuals.iter().map(|c| c * c).sum::<f64>();
+            }
+        }
+        let buffers = &problem.buffers;
+        let errors = buffers.weights.iter().zip(&buffers.errors);
+        FrameAnswer {
+            coordinates: problem.pose.effective().to_vec(),
+            objective,
+            weighted_squares,
+            marker_errors: errors
+                .map(|(&w, e)| if w > 0.0 { e.norm() } else { f64::NAN })
+                .collect(),
+            closure_error,
+            status,
+            iterations,
+        }
+    }
+
+    /// Rough first guesses for a frame about which nothing is known, the most promising first.
+    ///
+    /// The coordinates that turn the whole model are tried at every combination of quarter turns
+    /// that their ranges allow; each is judged by the markers' distances after both clouds are
+    /// moved to their centroids. The defaults are always among the guesses.
+    pub fn first_guesses(
+        &self,
+        scratch: &mut Scratch,
+        targets: &[Option<[f64; 3]>],
+        most: usize,
+    ) -> Vec<Vec<f64>> {
+        let mut guesses = vec![(f64::INFINITY, self.defaults.clone())];
+        let turns = 4usize.pow(self.root_rotations.len() as u32);
+        for combination in 0..turns {
+            let mut stored = self.defaults.clone();
+            let mut digits = combination;
+            let mut legal = true;
+            for &id in &self.root_rotations {
+                let quarter = (digits % 4) as f64;
+                digits /= 4;
+                let place = self.model.stored_range(id);
+                if self.model.coordinate(id).kind == CoordinateKind::Orientation {
+                    // One orientation has all turns: about each axis by the three digits.
+                    let up = [Vec3::X, Vec3::Y, Vec3::Z][combination / 4 % 3];
+                    let turn = condyle_math::Quat::from_axis_angle(up, quarter * FRAC_PI_2);
+                    stored[place].copy_from_slice(&turn.to_array());
+                    continue;
+                }
+                let value = (quarter - if quarter == 3.0 { 4.0 } else { 0.0 }) * FRAC_PI_2;
+                stored[place.start] += value;
+                let range = self.model.coordinate(id).range;
+                legal &= !self.options.limits
+                    || value == 0.0
+                    || range.distance(stored[place.start]) >= 0.0;
+            }
+            if legal && let Some(spread) = self.spread(scratch, targets, &mut stored) {
+                guesses.push((spread, stored));
+            }
+        }
+        guesses.sort_by(|a, b| a.0.total_cmp(&b.0));
+        guesses.dedup_by(|a, b| a.1 == b.1);
+        guesses.truncate(most.max(1));
+        guesses.into_iter().map(|(_, stored)| stored).collect()
+    }
+
+    /// Squared distance between the model's and the recorded markers, each about their centroid.
+    fn spread(
+        &self,
+        scratch: &mut Scratch,
+        targets: &[Option<[f64; 3]>],
+        stored: &mut [f64],
+    ) -> Option<f64> {
+        self.hold(stored);
+        self.program.evaluate(stored, Mode::Open, &mut scratch.pose).ok()?;
+        let (mut total, mut between) = (0.0, Vec3::ZERO);
+        for (marker, target) in self.markers.iter().zip(targets) {
+            if let Some(target) = target {
+                let point = scratch.pose.frame(marker.segment) * marker.point;
+                between += (point - Vec3::from(*target)) * marker.weight;
+                total += marker.weight;
+            }
+        }
+        if total <= 0.0 {
+            return None;
+        }
+        let between = between * (1.0 / total);
+        let mut sum = 0.0;
+        for (marker, target) in self.markers.iter().zip(targets) {
+            if let Some(target) = target {
+                let point = scratch.pose.frame(marker.segment) * marker.point;
+                sum += marker.weight * (point - Vec3::from(*target) - between).norm_squared();
+            }
+        }
+        Some(sum)
+    }
+}
+
+/// Whether an answer beats another: met constraints first, then a clearly lower F.
+pub(crate) fn better(a: &FrameAnswer, b: &FrameAnswer) -> bool {
+    let broken = |answer: &FrameAnswer| answer.status == FrameStatus::Infeasible;
+    match (broken(a), broken(b)) {
+        (false, true) => true,
+        (true, false) => false,
+        _ => a.objective < b.objective * (1.0 - 1e-6) - 1e-15,
+    }
+}

@@ -1,0 +1,98 @@
+//! The second moments of a segment's markers.
+//!
+//! With the twist (ω, l) of a direction, a marker at p moves by ω × p + l. Sums of products of such
+//! velocities over all markers of a segment are those of weighted points in a rigid body, so
+//!
+//! ```text
+//! Σₘ wₘ vₘⱼ·vₘₖ = tⱼ · (I tₖ),      Σₘ wₘ vₘⱼ·eₘ = tⱼ · f
+//! ```
+//!
+//! with the spatial inertia I of the points and the wrench f of the errors. The cost of the normal
+//! equations then does not grow with the number of markers.
+
+use condyle_math::{Twist, Vec3};
+
+/// Weighted sums over the markers of one segment, about the world's origin.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moments {
+    mass: f64,
+    first: Vec3,
+    /// Σ w p pᵀ: xx, yy, zz, xy, xz, yz.
+    second: [f64; 6],
+    force: Vec3,
+    torque: Vec3,
+}
+
+impl Moments {
+    pub(crate) const ZERO: Self = Self {
+        mass: 0.0,
+        first: Vec3::ZERO,
+        second: [0.0; 6],
+        force: Vec3::ZERO,
+        torque: Vec3::ZERO,
+    };
+
+    /// Adds a marker at `p` whose error is `e`.
+    #[inline]
+    pub(crate) fn add(&mut self, weight: f64, p: Vec3, e: Vec3) {
+        self.mass += weight;
+        self.first += p * weight;
+        let products = [p.x * p.x, p.y * p.y, p.z * p.z, p.x * p.y, p.x * p.z, p.y * p.z];
+        for (sum, product) in self.second.iter_mut().zip(products) {
+            *sum += weight * product;
+        }
+        self.force += e * weight;
+        self.torque += p.cross(e) * weight;
+    }
+
+    /// `I t`, as a wrench: force and torque.
+    #[inline]
+    pub(crate) fn momentum(&self, t: Twist) -> (Vec3, Vec3) {
+        let force = t.linear * self.mass + t.angular.cross(self.first);
+        let [xx, yy, zz, xy, xz, yz] = self.second;
+        let w = t.angular;
+        let spin = Vec3::new(
+            (yy + zz) * w.x - xy * w.y - xz * w.z,
+            (xx + zz) * w.y - xy * w.x - yz * w.z,
+            (xx + yy) * w.z - xz * w.x - yz * w.y,
+        );
+        (force, spin + self.first.cross(t.linear))
+    }
+
+    /// `t · f` for the wrench of the errors.
+    #[inline]
+    pub(crate) fn power(&self, t: Twist) -> f64 {
+        t.linear.dot(self.force) + t.angular.dot(self.torque)
+    }
+}
+
+/// `t · (I u)` for a momentum `I u`.
+#[inline]
+pub(crate) fn pair(t: Twist, (force, torque): (Vec3, Vec3)) -> f64 {
+    t.linear.dot(force) + t.angular.dot(torque)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moments_equal_the_sums_over_markers() {
+        let markers = [
+            (1.0, Vec3::new(0.3, -0.2, 0.9), Vec3::new(0.01, 0.02, -0.01)),
+            (2.5, Vec3::new(-0.1, 0.4, 1.1), Vec3::new(-0.02, 0.00, 0.03)),
+            (0.7, Vec3::new(0.2, 0.1, 0.7), Vec3::new(0.00, -0.01, 0.02)),
+        ];
+        let t = Twist::rotation(Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.1, 0.2, 0.3));
+        let u = Twist { angular: Vec3::new(-0.3, 0.5, 0.2), linear: Vec3::new(0.4, -0.1, 0.7) };
+        let mut moments = Moments::ZERO;
+        markers.iter().for_each(|&(w, p, e)| moments.add(w, p, e));
+        let sum = |f: &dyn Fn(Vec3, Vec3) -> f64| -> f64 {
+            markers.iter().map(|&(w, p, e)| w * f(p, e)).sum()
+        };
+        let product = sum(&|p, _| t.velocity_at(p).dot(u.velocity_at(p)));
+        let power = sum(&|p, e| t.velocity_at(p).dot(e));
+        assert!((pair(t, moments.momentum(u)) - product).abs() < 1e-14);
+        assert!((moments.power(t) - power).abs() < 1e-14);
+    }
+}

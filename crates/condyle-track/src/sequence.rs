@@ -1,0 +1,152 @@
+//! Many frames: cut, solve each chunk, stitch.
+//!
+//! The cut depends on the number of frames alone, so any number of threads gives the same bytes:
+//!
+//! 1. the first frame of each chunk is solved in order, each from the one before ([`keys`]);
+//! 2. each chunk is solved on its own from its first frame, one frame beyond its end ([`solve_chunk`]);
+//! 3. where a chunk's last frame disagrees with the next chunk's first, the better of the two
+//!    postures wins and the other chunk is solved again from the seam ([`stitch`]).
+
+use crate::frame::{FrameAnswer, better};
+use crate::tracker::{Scratch, Tracker};
+use std::ops::Range;
+
+/// Frames that are solved one after another.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Chunk {
+    /// The chunk's own frames.
+    pub frames: Range<usize>,
+}
+
+/// Frames in a chunk.
+const LENGTH: usize = 64;
+
+/// How many first guesses the first frame gets.
+const FIRST_GUESSES: usize = 4;
+
+/// Cuts a recording into chunks.
+pub fn cut(frames: usize) -> Vec<Chunk> {
+    (0..frames)
+        .step_by(LENGTH)
+        .map(|start| Chunk { frames: start..(start + LENGTH).min(frames) })
+        .collect()
+}
+
+/// The recorded markers of each frame, in the order of the marker tasks.
+pub trait Recorded: Sync {
+    /// Writes the markers of a frame.
+    fn targets(&self, frame: usize, targets: &mut Vec<Option<[f64; 3]>>);
+}
+
+impl<F: Fn(usize, &mut Vec<Option<[f64; 3]>>) + Sync> Recorded for F {
+    fn targets(&self, frame: usize, targets: &mut Vec<Option<[f64; 3]>>) {
+        self(frame, targets);
+    }
+}
+
+/// Solves the first frame of every chunk, in order.
+pub fn keys(
+    tracker: &Tracker<'_>,
+    scratch: &mut Scratch,
+    recorded: &dyn Recorded,
+    chunks: &[Chunk],
+) -> Vec<FrameAnswer> {
+    let mut targets = vec![];
+    let mut keys: Vec<FrameAnswer> = vec![];
+    for chunk in chunks {
+        let frame = chunk.frames.start;
+        recorded.targets(frame, &mut targets);
+        let guesses = match keys.last() {
+            None => tracker.first_guesses(scratch, &targets, FIRST_GUESSES),
+            Some(_) => vec![],
+        };
+        let mut starts: Vec<&[f64]> =
+            keys.last().map(|k| k.coordinates.as_slice()).into_iter().collect();
+        starts.extend(guesses.iter().map(Vec::as_slice));
+        let key = tracker.solve_frame(scratch, &targets, frame, &starts);
+        keys.push(key);
+    }
+    keys
+}
+
+/// Solves a run of frames forwards or backwards, each from the one before.
+fn run(
+    tracker: &Tracker<'_>,
+    scratch: &mut Scratch,
+    recorded: &dyn Recorded,
+    frames: impl Iterator<Item = usize>,
+    start: &[f64],
+) -> Vec<FrameAnswer> {
+    let mut targets = vec![];
+    let mut answers: Vec<FrameAnswer> = vec![];
+    scratch.solver.forget();
+    for frame in frames {
+        recorded.targets(frame, &mut targets);
+        let from = answers.last().map_or(start, |a| a.coordinates.as_slice());
+        let answer = tracker.descend(scratch, &targets, frame, from, None);
+        answers.push(answer);
+    }
+    answers
+}
+
+/// Solves the frames of a chunk after its first, and the first frame of the next chunk.
+///
+/// The answers begin with the key and have one more frame than the chunk, except in the last.
+pub fn solve_chunk(
+    tracker: &Tracker<'_>,
+    scratch: &mut Scratch,
+    recorded: &dyn Recorded,
+    chunk: &Chunk,
+    key: &FrameAnswer,
+    total: usize,
+) -> Vec<FrameAnswer> {
+    let end = (chunk.frames.end + 1).min(total);
+    let mut answers = vec![key.clone()];
+    let rest = chunk.frames.start + 1..end;
+    answers.extend(run(tracker, scratch, recorded, rest, &key.coordinates));
+    answers
+}
+
+/// Joins the chunks' answers into one for each frame.
+pub fn stitch(
+    tracker: &Tracker<'_>,
+    scratch: &mut Scratch,
+    recorded: &dyn Recorded,
+    chunks: &[Chunk],
+    mut answers: Vec<Vec<FrameAnswer>>,
+) -> Vec<FrameAnswer> {
+    // Forwards: a chunk that began worse than the one before it ended starts again from there.
+    for i in 1..chunks.len() {
+        let Some(seam) = answers[i - 1].get(chunks[i - 1].frames.len()).cloned() else { continue };
+        if better(&seam, &answers[i][0]) {
+            let total = chunks.last().map_or(0, |c| c.frames.end);
+            answers[i] = solve_chunk(tracker, scratch, recorded, &chunks[i], &seam, total);
+        }
+    }
+    // Backwards: a chunk that ended worse than the next one began is walked back from the seam for
+    // as long as that helps.
+    for i in (1..chunks.len()).rev() {
+        let length = chunks[i - 1].frames.len();
+        let Some(seam) = answers[i - 1].get(length) else { continue };
+        let mut from = answers[i][0].clone();
+        if !better(&from, seam) {
+            continue;
+        }
+        for position in (0..length).rev() {
+            let frame = chunks[i - 1].frames.start + position;
+            let again = run(tracker, scratch, recorded, frame..frame + 1, &from.coordinates);
+            let Some(again) = again.into_iter().next() else { break };
+            if !better(&again, &answers[i - 1][position]) {
+                break;
+            }
+            from = again.clone();
+            answers[i - 1][position] = again;
+        }
+    }
+    let lengths: Vec<usize> = chunks.iter().map(|c| c.frames.len()).collect();
+    answers
+        .into_iter()
+        .zip(lengths)
+        .flat_map(|(answers, length)| answers.into_iter().take(length))
+        .collect()
+}

@@ -1,0 +1,1 @@
+//! A plain human figure built in Rust, and recordings of it.

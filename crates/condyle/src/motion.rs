@@ -1,0 +1,143 @@
+//! The coordinates of a model over time, to and from tables.
+
+use condyle_formats::{AngleUnit, Diagnostic, Table, coordinate_name};
+use condyle_model::{CoordinateId, CoordinateKind, Mode, Model, Pose, Program};
+
+/// Stored numbers of all coordinates of one model, frame by frame, in radians and metres.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Motion {
+    /// Seconds, one for each frame.
+    pub times: Vec<f64>,
+    /// For each frame the stored numbers of all coordinates, in the model's order.
+    pub frames: Vec<Vec<f64>>,
+}
+
+/// The names of the columns that hold a coordinate.
+pub fn columns(model: &Model, id: CoordinateId) -> Vec<String> {
+    let key = model.coordinate_key(id);
+    match model.coordinate(id).kind {
+        CoordinateKind::Orientation => {
+            ["qx", "qy", "qz", "qw"].iter().map(|part| format!("{key}.{part}")).collect()
+        }
+        _ => vec![key],
+    }
+}
+
+impl Motion {
+    /// A motion from a table whose columns are named after coordinates.
+    ///
+    /// Degrees are converted for rotations only, and only where the table says degrees. Coordinates
+    /// without a column keep their defaults; columns that are no coordinate are reported.
+    pub fn from_table(model: &Model, table: &Table) -> (Self, Vec<Diagnostic>) {
+        let mut warnings = vec![];
+        let mut sources: Vec<(usize, usize, f64)> = vec![];
+        let mut used = vec![false; table.columns.len()];
+        let mut absent = vec![];
+        for id in model.coordinate_ids() {
+            let coordinate = model.coordinate(id);
+            let degrees = table.angle_unit == AngleUnit::Degrees
+                && coordinate.kind == CoordinateKind::Rotation;
+            let factor = if degrees { 1f64.to_radians() } else { 1.0 };
+            let place = model.stored_range(id);
+            for (offset, name) in columns(model, id).into_iter().enumerate() {
+                let set = &model.joint_sets()[coordinate.joint_set.index()].name;
+                let path = format!("{set}/{}", coordinate.name);
+                let held = |column: &String| {
+                    let bare = column.strip_suffix("/value").unwrap_or(column);
+                    bare.trim_start_matches('/').ends_with(&path)
+                };
+                let column = table.column(&name).or_else(|| table.columns.iter().position(held));
+                match column {
+                    Some(column) => {
+                        used[column] = true;
+                        sources.push((place.start + offset, column, factor));
+                    }
+                    None if offset == 0 => absent.push(name),
+                    None => {}
+                }
+            }
+        }
+        if !absent.is_empty() {
+            warnings.push(
+                Diagnostic::new("motion/absent", format!("no column for {}", listed(&absent)))
+                    .with_help("these coordinates keep their defaults"),
+            );
+        }
+        let extra: Vec<String> = table
+            .columns
+            .iter()
+            .zip(used)
+            .filter(|(column, used)| !used && coordinate_name(column).is_some())
+            .map(|(column, _)| column.clone())
+            .collect();
+        if !extra.is_empty() {
+            let message = format!("the model has no coordinate for {}", listed(&extra));
+            warnings.push(
+                Diagnostic::new("motion/extra", message).with_help("these columns are ignored"),
+            );
+        }
+        let defaults = model.defaults();
+        let mut gaps = 0;
+        let frames = (0..table.rows())
+            .map(|row| {
+                let mut stored = defaults.clone();
+                for &(place, column, factor) in &sources {
+                    match table.value(row, column) {
+                        Some(value) if value.is_finite() => stored[place] = value * factor,
+                        _ => gaps += 1,
+                    }
+                }
+                stored
+            })
+            .collect();
+        if gaps > 0 {
+            warnings.push(
+                Diagnostic::new("motion/blank", format!("{gaps} cells hold no number"))
+                    .with_help("the coordinates keep their defaults there"),
+            );
+        }
+        (Self { times: table.times.clone(), frames }, warnings)
+    }
+
+    /// A table of the motion, coupled coordinates included, rotations in degrees.
+    ///
+    /// Coordinates that are neither rotations nor translations are written as they are, which is
+    /// what OpenSim expects of them.
+    pub fn to_table(&self, model: &Model, name: &str) -> Table {
+        let ids: Vec<CoordinateId> = model.coordinate_ids().collect();
+        let mut values = Vec::with_capacity(self.frames.len() * model.stored_len());
+        for frame in &self.frames {
+            for &id in &ids {
+                let rotation = model.coordinate(id).kind == CoordinateKind::Rotation;
+                let factor = if rotation { 1f64.to_degrees() } else { 1.0 };
+                values.extend(frame[model.stored_range(id)].iter().map(|v| v * factor));
+            }
+        }
+        Table {
+            name: name.to_owned(),
+            columns: ids.iter().flat_map(|&id| columns(model, id)).collect(),
+            times: self.times.clone(),
+            values,
+            angle_unit: AngleUnit::Degrees,
+            header: vec![],
+        }
+    }
+
+    /// Replaces requested by effective coordinates, frame by frame.
+    pub fn make_effective(&mut self, program: &Program, mode: Mode) {
+        let mut pose = Pose::new(program);
+        for frame in &mut self.frames {
+            if program.evaluate(frame, mode, &mut pose).is_ok() {
+                frame.copy_from_slice(pose.effective());
+            }
+        }
+    }
+}
+
+fn listed(names: &[String]) -> String {
+    let shown: Vec<String> = names.iter().take(6).map(|n| format!("`{n}`")).collect();
+    match names.len() - shown.len() {
+        0 => shown.join(", "),
+        more => format!("{} and {more} more", shown.join(", ")),
+    }
+}

@@ -1,0 +1,146 @@
+//! Files by path, with errors and warnings that carry the path.
+
+use condyle_formats::opensim::{model as osim, setup};
+use condyle_formats::{Diagnostic, Error, Read, Recording, Table, csv, sto, trc};
+use condyle_model::Model;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// A file that could not be used.
+#[derive(Debug)]
+pub struct OpenError {
+    /// The file.
+    pub path: PathBuf,
+    /// Why.
+    pub cause: Cause,
+}
+
+/// Why a file could not be used.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum Cause {
+    /// The system would not give it.
+    Io(std::io::Error),
+    /// Its content is wrong.
+    Content(Error),
+    /// Its ending names no format that fits.
+    Format {
+        /// What was wanted, such as "a model".
+        wanted: &'static str,
+        /// The endings that would do.
+        known: &'static str,
+    },
+}
+
+impl fmt::Display for OpenError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let path = self.path.display();
+        match &self.cause {
+            Cause::Io(error) => write!(f, "{path}: {error}"),
+            Cause::Content(error) => write!(f, "{}", located(&self.path, error.diagnostic())),
+            Cause::Format { wanted, known } => {
+                write!(f, "{path}: the ending names no format for {wanted} (known are {known})")
+            }
+        }
+    }
+}
+
+impl std::error::Error for OpenError {}
+
+/// A diagnostic as compilers print it: `file:line:column: message (help)`.
+pub fn located(path: &Path, said: &Diagnostic) -> String {
+    let help = said.help.as_ref().map_or(String::new(), |help| format!(" ({help})"));
+    let place = match said.place {
+        Some(p) if p.line > 0 && p.column > 0 => format!(":{}:{}", p.line, p.column),
+        Some(p) if p.line > 0 => format!(":{}", p.line),
+        Some(p) => p.byte.map_or(String::new(), |byte| format!(": byte {byte}")),
+        None => String::new(),
+    };
+    format!("{}{place}: {}{help}", path.display(), said.message)
+}
+
+/// The largest file that is read, in bytes.
+const LARGEST: u64 = 1 << 30;
+
+fn bytes(path: &Path) -> Result<Vec<u8>, OpenError> {
+    let fail = |error| OpenError { path: path.to_owned(), cause: Cause::Io(error) };
+    let size = std::fs::metadata(path).map_err(fail)?.len();
+    if size > LARGEST {
+        let error = Error::new("file/size", format!("the file has {size} bytes"))
+            .with_help(format!("at most {LARGEST} are read"));
+        return Err(OpenError { path: path.to_owned(), cause: Cause::Content(error) });
+    }
+    std::fs::read(path).map_err(fail)
+}
+
+fn read_with<T>(
+    path: &Path,
+    reader: impl FnOnce(&[u8]) -> Result<Read<T>, Error>,
+) -> Result<Read<T>, OpenError> {
+    let content = |error| OpenError { path: path.to_owned(), cause: Cause::Content(error) };
+    reader(&bytes(path)?).map_err(content)
+}
+
+/// The ending of a path in lower case, without its dot.
+pub fn ending(path: &Path) -> String {
+    path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
+fn wrong<T>(path: &Path, wanted: &'static str, known: &'static str) -> Result<T, OpenError> {
+    Err(OpenError { path: path.to_owned(), cause: Cause::Format { wanted, known } })
+}
+
+/// Opens a model of any format.
+///
+/// # Errors
+/// [`OpenError`] with the path, and the line where there is one.
+pub fn model(path: &Path) -> Result<Read<Model>, OpenError> {
+    match ending(path).as_str() {
+        "osim" | "xml" => read_with(path, osim::read),
+        _ => wrong(path, "a model", ".osim"),
+    }
+}
+
+/// Opens a marker recording of any format.
+///
+/// # Errors
+/// [`OpenError`] with the path, and the line where there is one.
+pub fn recording(path: &Path) -> Result<Read<Recording>, OpenError> {
+    match ending(path).as_str() {
+        "trc" => read_with(path, trc::from_bytes),
+        _ => wrong(path, "a marker recording", ".trc"),
+    }
+}
+
+/// Opens a table over time, such as a motion.
+///
+/// # Errors
+/// [`OpenError`] with the path, and the line where there is one.
+pub fn table(path: &Path) -> Result<Read<Table>, OpenError> {
+    match ending(path).as_str() {
+        "mot" | "sto" => read_with(path, sto::from_bytes),
+        "csv" => read_with(path, csv::from_bytes),
+        _ => wrong(path, "a motion", ".mot, .sto, .csv"),
+    }
+}
+
+/// Opens a setup of OpenSim's inverse kinematics, with its task set if that has a file of its own.
+///
+/// # Errors
+/// [`OpenError`] with the path, and the line where there is one.
+pub fn ik_setup(path: &Path) -> Result<Read<setup::IkSetup>, OpenError> {
+    let mut read = read_with(path, setup::from_bytes)?;
+    if let setup::IkTasks::File(name) = &read.value.tasks {
+        let tasks_path = beside(path, name);
+        let tasks = read_with(&tasks_path, setup::tasks_from_bytes)?;
+        read.warnings.extend(tasks.warnings);
+        read.value.tasks = setup::IkTasks::Inline(tasks.value);
+    }
+    Ok(read)
+}
+
+/// A path that a file gives, from the file's own place.
+pub fn beside(file: &Path, name: &str) -> PathBuf {
+    let name = name.replace('\\', "/");
+    file.parent().unwrap_or(Path::new("")).join(name)
+}
