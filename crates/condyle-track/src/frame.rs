@@ -1,11 +1,19 @@
 //! One frame: where to start, what came out.
 
 use crate::problem::FrameProblem;
+use crate::robust;
 use crate::tracker::{Scratch, Tracker};
 use condyle_math::Vec3;
 use condyle_model::{CoordinateKind, Mode};
 use condyle_solve::least_squares::{self, Stop};
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// A frame that fits this many times worse than the one before is looked at again.
+const JUMP: f64 = 3.0;
+/// A rise of F below this (3 mm RMS) is no jump.
+const JUMP_FLOOR: f64 = 1e-5;
+/// How many first guesses such a frame gets.
+const RESCUE_GUESSES: usize = 2;
 
 /// How a frame ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,7 +98,7 @@ impl Tracker<'_> {
         let mut iterations = 0;
         for start in starts {
             scratch.solver.forget();
-            let answer = self.descend(scratch, targets, frame, start, None);
+            let answer = self.descend_robustly(scratch, targets, frame, start);
             iterations += answer.iterations;
             let wins = best.as_ref().is_none_or(|best| better(&answer, best));
             if wins {
@@ -101,6 +109,45 @@ impl Tracker<'_> {
             best.unwrap_or_else(|| self.descend(scratch, targets, frame, defaults, None));
         best.iterations = iterations;
         best
+    }
+
+    /// The posture of a frame about which nothing is known, from [`Tracker::first_guesses`].
+    ///
+    /// A descent from afar may wind a joint through a whole turn, and a joint that glides while it
+    /// turns may even fit a little better there. Such an answer is wound back by whole turns towards
+    /// the defaults and solved again from there, and that is what competes.
+    pub fn solve_first(
+        &self,
+        scratch: &mut Scratch,
+        targets: &[Option<[f64; 3]>],
+        frame: usize,
+        guesses: usize,
+    ) -> FrameAnswer {
+        let guesses = self.first_guesses(scratch, targets, guesses);
+        let mut best: Option<FrameAnswer> = None;
+        for guess in &guesses {
+            let mut answer = self.solve_frame(scratch, targets, frame, &[guess]);
+            if let Some(unwound) = self.unwound(&answer.coordinates) {
+                answer = self.solve_frame(scratch, targets, frame, &[&unwound]);
+            }
+            if best.as_ref().is_none_or(|best| better(&answer, best)) {
+                best = Some(answer);
+            }
+        }
+        best.unwrap_or_else(|| self.solve_frame(scratch, targets, frame, &[]))
+    }
+
+    /// The same posture with every angle within half a turn of its default; none if all are.
+    fn unwound(&self, stored: &[f64]) -> Option<Vec<f64>> {
+        let mut unwound = stored.to_vec();
+        for id in self.model.coordinate_ids() {
+            if self.model.coordinate(id).kind == CoordinateKind::Rotation {
+                let place = self.model.stored_range(id).start;
+                let turns = ((stored[place] - self.defaults[place]) / TAU).round();
+                unwound[place] -= turns * TAU;
+            }
+        }
+        (unwound != stored).then_some(unwound)
     }
 
     /// One descent from one start, keeping the solver's active set of the last descent.
@@ -147,6 +194,57 @@ impl Tracker<'_> {
             }
         }
         self.measure(problem, iterations, status)
+    }
+
+    /// The posture of a frame that follows another, whose posture is the start.
+    ///
+    /// A frame that fits far worse than the one before, or not at all, is tried again from first
+    /// guesses: it may be a flip, or the end of a long gap.
+    pub(crate) fn follow(
+        &self,
+        scratch: &mut Scratch,
+        targets: &[Option<[f64; 3]>],
+        frame: usize,
+        start: &[f64],
+        objective_before: Option<f64>,
+    ) -> FrameAnswer {
+        let mut answer = self.descend_robustly(scratch, targets, frame, start);
+        let before = objective_before.unwrap_or(f64::INFINITY);
+        let jumped = answer.objective > JUMP * before + JUMP_FLOOR;
+        let lost = matches!(answer.status, FrameStatus::Uncertain | FrameStatus::Infeasible);
+        if jumped || lost {
+            let spent = answer.iterations;
+            let again = self.solve_first(scratch, targets, frame, RESCUE_GUESSES);
+            let all = spent + again.iterations;
+            if better(&again, &answer) {
+                answer = again;
+            }
+            answer.iterations = all;
+        }
+        answer
+    }
+
+    /// A descent that, where asked, weighs markers down that the others contradict.
+    fn descend_robustly(
+        &self,
+        scratch: &mut Scratch,
+        targets: &[Option<[f64; 3]>],
+        frame: usize,
+        start: &[f64],
+    ) -> FrameAnswer {
+        let mut answer = self.descend(scratch, targets, frame, start, None);
+        if !self.options.robust {
+            return answer;
+        }
+        let mut factors = vec![];
+        for _ in 0..robust::ROUNDS {
+            robust::factors(&answer.marker_errors, &mut factors);
+            let from = std::mem::take(&mut answer.coordinates);
+            let iterations = answer.iterations;
+            answer = self.descend(scratch, targets, frame, &from, Some(&factors));
+            answer.iterations += iterations;
+        }
+        answer
     }
 
     /// Puts locked coordinates at their defaults and the others within their bounds.

@@ -21,12 +21,14 @@
 //! | [`Tracker`] | one model and its tasks, ready to solve frames |
 //! | [`frame`] | one frame: starts, solve, status |
 //! | [`sequence`] | many frames: cut, solve a chunk, stitch |
+//! | [`robust`] | faulty markers: weighed down, swapped labels found |
 //!
 //! Nothing here reads a file, starts a thread, or depends on how many there are.
 
 pub mod frame;
 mod moments;
 mod problem;
+pub mod robust;
 pub mod sequence;
 pub mod tasks;
 mod tracker;

@@ -56,14 +56,10 @@ pub fn keys(
     for chunk in chunks {
         let frame = chunk.frames.start;
         recorded.targets(frame, &mut targets);
-        let guesses = match keys.last() {
-            None => tracker.first_guesses(scratch, &targets, FIRST_GUESSES),
-            Some(_) => vec![],
+        let key = match keys.last() {
+            None => tracker.solve_first(scratch, &targets, frame, FIRST_GUESSES),
+            Some(before) => tracker.solve_frame(scratch, &targets, frame, &[&before.coordinates]),
         };
-        let mut starts: Vec<&[f64]> =
-            keys.last().map(|k| k.coordinates.as_slice()).into_iter().collect();
-        starts.extend(guesses.iter().map(Vec::as_slice));
-        let key = tracker.solve_frame(scratch, &targets, frame, &starts);
         keys.push(key);
     }
     keys
@@ -75,15 +71,16 @@ fn run(
     scratch: &mut Scratch,
     recorded: &dyn Recorded,
     frames: impl Iterator<Item = usize>,
-    start: &[f64],
+    start: &FrameAnswer,
 ) -> Vec<FrameAnswer> {
     let mut targets = vec![];
     let mut answers: Vec<FrameAnswer> = vec![];
     scratch.solver.forget();
     for frame in frames {
         recorded.targets(frame, &mut targets);
-        let from = answers.last().map_or(start, |a| a.coordinates.as_slice());
-        let answer = tracker.descend(scratch, &targets, frame, from, None);
+        let before = answers.last().unwrap_or(start);
+        let fit = before.status.is_solved().then_some(before.objective);
+        let answer = tracker.follow(scratch, &targets, frame, &before.coordinates, fit);
         answers.push(answer);
     }
     answers
@@ -103,7 +100,7 @@ pub fn solve_chunk(
     let end = (chunk.frames.end + 1).min(total);
     let mut answers = vec![key.clone()];
     let rest = chunk.frames.start + 1..end;
-    answers.extend(run(tracker, scratch, recorded, rest, &key.coordinates));
+    answers.extend(run(tracker, scratch, recorded, rest, key));
     answers
 }
 
@@ -134,7 +131,7 @@ pub fn stitch(
         }
         for position in (0..length).rev() {
             let frame = chunks[i - 1].frames.start + position;
-            let again = run(tracker, scratch, recorded, frame..frame + 1, &from.coordinates);
+            let again = run(tracker, scratch, recorded, frame..frame + 1, &from);
             let Some(again) = again.into_iter().next() else { break };
             if !better(&again, &answers[i - 1][position]) {
                 break;

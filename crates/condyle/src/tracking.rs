@@ -5,6 +5,7 @@ use crate::motion::Motion;
 use condyle_formats::opensim::setup::{CoordinateTarget, IkSetup, IkTasks};
 use condyle_formats::{Diagnostic, Recording, Table};
 use condyle_model::Model;
+use condyle_track::robust::{self, Corrected};
 use condyle_track::sequence::{self, Recorded};
 use condyle_track::{
     CoordinateTask, FrameAnswer, FrameStatus, MarkerTask, Options, Scratch, Tasks, Tracker,
@@ -183,7 +184,7 @@ pub fn track(
     let tracker = Tracker::new(model, tasks, options);
     let mut job = Job { tracker, recording, labels, frames, progress };
     let start = Instant::now();
-    let (answers, swaps) = job.run(plan, &markers);
+    let (answers, swaps) = job.run(plan.threads, plan.robust);
     let seconds = start.elapsed().as_secs_f64();
     let motion = Motion {
         times: recording.times[job.frames.clone()].to_vec(),
@@ -314,20 +315,43 @@ impl Recorded for Ordered<'_> {
 }
 
 impl Job<'_, '_> {
-    fn run(&mut self, plan: &Plan, markers: &[String]) -> (Vec<FrameAnswer>, Vec<Swap>) {
-        let _ = markers;
+    /// Tracks all frames; with robust options, once more with exchanged labels put right.
+    fn run(&mut self, threads: Option<usize>, robust: bool) -> (Vec<FrameAnswer>, Vec<Swap>) {
+        let labels = std::mem::take(&mut self.labels);
         let recorded =
-            Ordered { recording: self.recording, labels: &self.labels, first: self.frames.start };
+            Ordered { recording: self.recording, labels: &labels, first: self.frames.start };
+        let mut answers = self.pass(threads, &recorded);
+        let mut swaps = vec![];
+        if robust {
+            let mut scratch = Scratch::new(&self.tracker);
+            let exchanged =
+                robust::find_exchanged(&self.tracker, &mut scratch, &recorded, &answers);
+            if !exchanged.is_empty() {
+                let corrected = Corrected { recorded: &recorded, exchanged: &exchanged };
+                answers = self.pass(threads, &corrected);
+            }
+            let name = |task: usize| self.recording.labels[labels[task]].clone();
+            let first = self.frames.start;
+            swaps.extend(exchanged.iter().map(|e| Swap {
+                labels: e.tasks.map(name),
+                frames: first + e.frames.start..first + e.frames.end,
+            }));
+        }
+        self.labels = labels;
+        (answers, swaps)
+    }
+
+    fn pass(&mut self, threads: Option<usize>, recorded: &dyn Recorded) -> Vec<FrameAnswer> {
         let total = self.frames.len();
         let chunks = sequence::cut(total);
-        let mut scratch = Scratch::new(&self.tracker);
-        let keys = sequence::keys(&self.tracker, &mut scratch, &recorded, &chunks);
         let tracker = &self.tracker;
+        let mut scratch = Scratch::new(tracker);
+        let keys = sequence::keys(tracker, &mut scratch, recorded, &chunks);
         let progress = std::sync::Mutex::new((0usize, &mut self.progress));
         let solve = |index: usize, scratch: &mut Scratch| {
             let chunk = &chunks[index];
             let answers =
-                sequence::solve_chunk(tracker, scratch, &recorded, chunk, &keys[index], total);
+                sequence::solve_chunk(tracker, scratch, recorded, chunk, &keys[index], total);
             if let Ok(mut told) = progress.lock() {
                 told.0 += chunk.frames.len();
                 let done = told.0;
@@ -335,9 +359,8 @@ impl Job<'_, '_> {
             }
             answers
         };
-        let answers = in_parallel(plan.threads, chunks.len(), || Scratch::new(tracker), solve);
-        let answers = sequence::stitch(tracker, &mut scratch, &recorded, &chunks, answers);
-        (answers, vec![])
+        let answers = in_parallel(threads, chunks.len(), || Scratch::new(tracker), solve);
+        sequence::stitch(tracker, &mut scratch, recorded, &chunks, answers)
     }
 }
 

@@ -36,11 +36,10 @@ fn plan(data: &Path, pair: &Value) -> Plan {
         Ok(read) => Plan::from_setup(&read.value),
         Err(_) => {
             let tasks = setup::tasks_from_bytes(&bytes).unwrap().value;
-            let mut setup = setup::read(
-                "<OpenSimDocument><InverseKinematicsTool/></OpenSimDocument>",
-            )
-            .unwrap()
-            .value;
+            let mut setup =
+                setup::read("<OpenSimDocument><InverseKinematicsTool/></OpenSimDocument>")
+                    .unwrap()
+                    .value;
             setup.tasks = IkTasks::Inline(tasks);
             Plan::from_setup(&setup)
         }

@@ -27,6 +27,11 @@ impl<S: Scalar> Pose<S> {
         }
     }
 
+    /// Bytes of the buffers: every scalar and transform, those that only components read included.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.scalars[..]) + size_of_val(&self.transforms[..])
+    }
+
     /// The world transform of a segment: `p_world = T · p_segment`.
     #[inline]
     pub fn segment(&self, segment: SegmentId) -> Affine<S> {

@@ -153,12 +153,16 @@ impl Model {
     }
 
     /// The positions of all coordinates.
-    pub fn coordinate_ids(&self) -> impl ExactSizeIterator<Item = CoordinateId> + use<> {
+    pub fn coordinate_ids(
+        &self,
+    ) -> impl ExactSizeIterator<Item = CoordinateId> + DoubleEndedIterator + use<> {
         (0..self.coordinates.len() as u32).map(CoordinateId)
     }
 
     /// The positions of all segments.
-    pub fn segment_ids(&self) -> impl ExactSizeIterator<Item = SegmentId> + use<> {
+    pub fn segment_ids(
+        &self,
+    ) -> impl ExactSizeIterator<Item = SegmentId> + DoubleEndedIterator + use<> {
         (0..self.segments.len() as u32).map(SegmentId)
     }
 
