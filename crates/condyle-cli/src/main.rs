@@ -5,6 +5,7 @@
 
 mod commands;
 mod failure;
+mod motion_format;
 mod output;
 mod progress;
 

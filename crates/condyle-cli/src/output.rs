@@ -61,3 +61,22 @@ pub(crate) fn columns(rows: &[Vec<String>]) -> String {
     }
     text
 }
+
+/// A head and names after it, in lines of at most 96 letters; further lines stand under the names.
+pub(crate) fn wrapped(head: &str, names: &[&str]) -> String {
+    const WIDTH: usize = 96;
+    let mut text = format!("  {head}");
+    let mut used = text.chars().count();
+    for name in names {
+        let length = name.chars().count() + 1;
+        if used + length > WIDTH && used > 4 {
+            text.push_str("\n   ");
+            used = 3;
+        }
+        text.push(' ');
+        text.push_str(name);
+        used += length;
+    }
+    text.push('\n');
+    text
+}

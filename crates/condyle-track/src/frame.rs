@@ -12,6 +12,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 const JUMP: f64 = 3.0;
 /// A rise of F below this (3 mm RMS) is no jump.
 const JUMP_FLOOR: f64 = 1e-5;
+/// Two values of F closer than this (0.03 mm RMS) are alike.
+const ALIKE: f64 = 1e-9;
 /// How many first guesses such a frame gets.
 const RESCUE_GUESSES: usize = 2;
 
@@ -130,11 +132,31 @@ impl Tracker<'_> {
             if let Some(unwound) = self.unwound(&answer.coordinates) {
                 answer = self.solve_frame(scratch, targets, frame, &[&unwound]);
             }
-            if best.as_ref().is_none_or(|best| better(&answer, best)) {
+            if best.as_ref().is_none_or(|best| self.preferred(&answer, best)) {
                 best = Some(answer);
             }
         }
         best.unwrap_or_else(|| self.solve_frame(scratch, targets, frame, &[]))
+    }
+
+    /// Whether an answer beats another where nothing came before: clearly lower F, or as good and
+    /// nearer to the defaults. Three angles can name one rotation in two ways, and both fit alike.
+    fn preferred(&self, a: &FrameAnswer, b: &FrameAnswer) -> bool {
+        let alike = (a.objective - b.objective).abs() <= 1e-4 * b.objective + ALIKE;
+        if !alike || a.status != b.status {
+            return better(a, b);
+        }
+        let away = |answer: &FrameAnswer| -> f64 {
+            let angles = self
+                .model
+                .coordinate_ids()
+                .filter(|&id| self.model.coordinate(id).kind == CoordinateKind::Rotation);
+            angles
+                .map(|id| self.model.stored_range(id).start)
+                .map(|place| (answer.coordinates[place] - self.defaults[place]).powi(2))
+                .sum()
+        };
+        away(a) < away(b) - 1e-6
     }
 
     /// The same posture with every angle within half a turn of its default; none if all are.

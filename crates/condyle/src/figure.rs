@@ -21,12 +21,12 @@ const STATURE: f64 = 1.75;
 /// Facing x, y up, z to the right.
 const SIDES: [(&str, f64); 2] = [("r", 1.0), ("l", -1.0)];
 
-/// The figure: 19 segments, 33 coordinates of which two follow, 45 markers.
+/// The figure: 15 segments, 35 coordinates of which two follow, 45 markers.
 ///
 /// ```
 /// let model = condyle::figure::walker();
 /// let follow = model.coordinates().iter().filter(|c| c.follows.is_some()).count();
-/// assert_eq!((model.coordinates().len(), follow), (33, 2));
+/// assert_eq!((model.coordinates().len(), follow), (35, 2));
 /// ```
 pub fn walker() -> Model {
     let mut figure = Figure { b: ModelBuilder::new("walker") };
@@ -281,13 +281,8 @@ impl Figure {
         let follow = self.b.map(set, "follow", flexion, Function::identity());
         self.b.follow(angle, follow);
         let knots = |values: [f64; 4]| {
-            let at = [0.0, 45.0, 90.0, 120.0].map(f64::to_radians);
-            spline(&[
-                (at[0], values[0]),
-                (at[1], values[1]),
-                (at[2], values[2]),
-                (at[3], values[3]),
-            ])
+            let [a, b, c, d] = values;
+            spline(&[(0.0, a), (45.0, b), (90.0, c), (120.0, d)])
         };
         let angle = Source::Coordinate(angle);
         let turn =
@@ -491,6 +486,22 @@ mod tests {
         }
         // The ankle of a person of 1.75 m stands 0.039 of that above the ground.
         assert!((lowest - 0.039 * STATURE).abs() < 0.08, "{lowest}");
+    }
+
+    #[test]
+    fn the_patella_lies_where_the_published_knots_put_it() {
+        let model = walker();
+        let program = Program::compile(&model);
+        let mut pose = Pose::new(&program);
+        let flexion = model.find_coordinate("knee_flexion_r").unwrap();
+        let mut stored = model.defaults();
+        stored[model.stored_range(flexion).start] = 90f64.to_radians();
+        program.evaluate(&stored, Mode::Open, &mut pose).unwrap();
+        let [femur, patella] = ["femur_r", "patella_r"].map(|n| model.find_segment(n).unwrap());
+        let place = pose.segment(femur).rigid_inverse() * pose.segment(patella).translation;
+        // Rajagopal et al. 2016 at 90 degrees, from the end of a femur of 0.245 statures.
+        let published = Vec3::new(-0.0088, -0.0349 - 0.245 * STATURE, 0.0);
+        assert!((place - published).norm() < 1e-12, "{place:?}");
     }
 
     #[test]

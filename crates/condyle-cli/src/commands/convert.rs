@@ -1,14 +1,230 @@
-//! `condyle convert`.
+//! `condyle convert`: a file in another format.
 
 use super::Outcome;
-use crate::failure::Failure;
-use clap::Args;
+use crate::failure::{Failure, warn_about, warned};
+use crate::motion_format::MotionFormat;
+use crate::output;
+use clap::{Args, ValueEnum};
+use condyle::formats::{AngleUnit, LengthUnit, Recording, Table, csv, sto, trc};
+use condyle::{Mode, Model, Motion, Pose, Program, open};
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
-pub(crate) struct Convert {}
+pub(crate) struct Convert {
+    /// A motion (.mot, .sto, .csv), a model (.osim) or a marker recording (.trc).
+    input: PathBuf,
+    /// Where to write; `-` is standard output and needs --to.
+    output: PathBuf,
+    /// The model that a motion belongs to.
+    #[arg(long, value_name = "M")]
+    model: Option<PathBuf>,
+    /// The format of the output, if not by its ending.
+    #[arg(long, value_enum)]
+    to: Option<Target>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Target {
+    /// OpenSim's motion file.
+    Mot,
+    /// OpenSim's storage file.
+    Sto,
+    /// Comma-separated, in radians and metres where a model says which is which.
+    Csv,
+    /// A scene.
+    Glb,
+    /// A marker recording.
+    Trc,
+}
+
+/// The combinations that exist, for the message about one that does not.
+const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
+                     to .glb (an animation) or .trc (the model's markers); a model (.osim) to .glb; \
+                     a recording (.trc) to .trc or .csv";
+
+impl Target {
+    /// By `--to`, else by the ending of the output.
+    fn of(path: &Path, to: Option<Self>) -> Result<Self, Failure> {
+        if let Some(to) = to {
+            return Ok(to);
+        }
+        if path == Path::new("-") {
+            return Err(Failure::new("standard output has no ending: name the format with --to"));
+        }
+        match open::ending(path).as_str() {
+            "mot" => Ok(Self::Mot),
+            "sto" => Ok(Self::Sto),
+            "csv" => Ok(Self::Csv),
+            "glb" => Ok(Self::Glb),
+            "trc" => Ok(Self::Trc),
+            _ => Err(Failure::new(format!(
+                "{}: the ending names no format that can be written ({KNOWN})",
+                path.display()
+            ))),
+        }
+    }
+
+    /// The format of a motion, if it is one.
+    fn motion(self) -> Option<MotionFormat> {
+        match self {
+            Self::Mot => Some(MotionFormat::Mot),
+            Self::Sto => Some(MotionFormat::Sto),
+            Self::Csv => Some(MotionFormat::Csv),
+            Self::Glb => Some(MotionFormat::Glb),
+            Self::Trc => None,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        self.motion().map_or("trc", MotionFormat::ending)
+    }
+}
 
 impl Convert {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
+        let target = Target::of(&self.output, self.to)?;
+        let bytes = match open::ending(&self.input).as_str() {
+            "mot" | "sto" | "csv" => self.from_motion(target)?,
+            "osim" | "xml" if target == Target::Glb => {
+                let model = warned(&self.input, open::model(&self.input)?);
+                MotionFormat::Glb.encode(&model, &Motion::default(), &self.name(), None)?
+            }
+            "trc" if matches!(target, Target::Trc | Target::Csv) => self.from_recording(target)?,
+            "trc" => {
+                return Err(self.unknown(
+                    target,
+                    "; `condyle track MODEL TRIAL -o OUT` makes motions of recordings",
+                ));
+            }
+            _ => return Err(self.unknown(target, "")),
+        };
+        output::write(&self.output, &bytes)?;
         Ok(Outcome::Done)
+    }
+
+    fn unknown(&self, target: Target, hint: &str) -> Failure {
+        let model = if self.model.is_some() { " with --model" } else { "" };
+        Failure::new(format!(
+            "{}: cannot be converted to .{}{model}{hint} ({KNOWN})",
+            self.input.display(),
+            target.name(),
+        ))
+    }
+
+    /// The input's name without its ending: the title of what is written.
+    fn name(&self) -> String {
+        self.input.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    fn from_motion(&self, target: Target) -> Result<Vec<u8>, Failure> {
+        let Some(model_path) = &self.model else {
+            if matches!(target, Target::Glb | Target::Trc) {
+                let what = format!("{}: without --model", self.input.display());
+                return Err(Failure::new(format!(
+                    "{what} a motion cannot become .{} ({KNOWN})",
+                    target.name()
+                )));
+            }
+            let table = warned(&self.input, open::table(&self.input)?);
+            return rewritten(&self.input, table, target);
+        };
+        let model = warned(model_path, open::model(model_path)?);
+        let table = warned(&self.input, open::table(&self.input)?);
+        let (mut motion, warnings) = Motion::from_table(&model, &table);
+        warn_about(&self.input, &warnings);
+        motion.make_effective(&Program::compile(&model), Mode::Open);
+        match target.motion() {
+            Some(format) => format.encode(&model, &motion, &self.name(), None),
+            None => self.virtual_markers(&model, &motion),
+        }
+    }
+
+    fn from_recording(&self, target: Target) -> Result<Vec<u8>, Failure> {
+        let recording = warned(&self.input, open::recording(&self.input)?);
+        if target == Target::Csv {
+            return encoded(csv::write(&marker_table(&recording)));
+        }
+        let name = self.output.file_name().unwrap_or_default().to_string_lossy();
+        encoded(trc::write(&recording, &name))
+    }
+
+    /// The model's markers along a motion, as a recording in millimetres.
+    fn virtual_markers(&self, model: &Model, motion: &Motion) -> Result<Vec<u8>, Failure> {
+        if model.markers().is_empty() {
+            return Err(Failure::new(format!(
+                "model `{}` has no markers to record: add a marker set",
+                model.name()
+            )));
+        }
+        if motion.frames.is_empty() {
+            return Err(Failure::new(format!(
+                "{}: the motion has no frames to record",
+                self.input.display()
+            )));
+        }
+        let program = Program::compile(model);
+        let mut pose = Pose::new(&program);
+        let mut positions = Vec::with_capacity(motion.frames.len() * model.markers().len());
+        for frame in &motion.frames {
+            program
+                .evaluate(frame, Mode::Open, &mut pose)
+                .map_err(|error| Failure::new(error.to_string()))?;
+            for marker in model.markers() {
+                let point = (pose.frame(marker.segment) * marker.point).to_array();
+                positions.push(point.iter().all(|x| x.is_finite()).then_some(point));
+            }
+        }
+        let recording = Recording {
+            labels: model.markers().iter().map(|m| m.name.clone()).collect(),
+            rate: rate(&motion.times),
+            times: motion.times.clone(),
+            positions,
+            units: LengthUnit::Millimetre,
+        };
+        let name = self.output.file_name().unwrap_or_default().to_string_lossy();
+        encoded(trc::write(&recording, &name))
+    }
+}
+
+fn encoded(text: Result<String, condyle::formats::Error>) -> Result<Vec<u8>, Failure> {
+    text.map(String::into_bytes).map_err(|error| Failure::new(error.to_string()))
+}
+
+/// A table in another format, number by number, with the unit of its angles said.
+fn rewritten(path: &Path, mut table: Table, target: Target) -> Result<Vec<u8>, Failure> {
+    if table.angle_unit == AngleUnit::Unstated {
+        // A CSV without a word about it is in radians: that is how this program writes them.
+        if open::ending(path) != "csv" {
+            eprintln!(
+                "warning: {}: the header does not say whether angles are in degrees; taken as \
+                 radians (add the line inDegrees=yes if they are not)",
+                path.display()
+            );
+        }
+        table.angle_unit = AngleUnit::Radians;
+    }
+    encoded(if target == Target::Csv { csv::write(&table) } else { sto::write(&table) })
+}
+
+/// Three columns for each marker, in metres; blank where it was not seen.
+fn marker_table(recording: &Recording) -> Table {
+    let axes = ["x", "y", "z"];
+    let columns = recording.labels.iter().flat_map(|l| axes.map(|axis| format!("{l}.{axis}")));
+    Table {
+        columns: columns.collect(),
+        times: recording.times.clone(),
+        values: recording.positions.iter().flat_map(|p| p.unwrap_or([f64::NAN; 3])).collect(),
+        ..Table::default()
+    }
+}
+
+/// Frames per second of evenly spaced times, rounded to what such rates are given with.
+fn rate(times: &[f64]) -> f64 {
+    match times {
+        [first, .., last] if last > first => {
+            let rate = (times.len() - 1) as f64 / (last - first);
+            (rate * 1e6).round() / 1e6
+        }
+        _ => 100.0,
     }
 }

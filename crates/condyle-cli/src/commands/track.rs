@@ -2,12 +2,13 @@
 
 use super::Outcome;
 use crate::failure::{Failure, warn_about, warned};
+use crate::motion_format::MotionFormat;
 use crate::output;
 use crate::progress::frames_bar;
 use clap::{Args, ValueEnum};
-use condyle::formats::{AngleUnit, Recording, csv, glb, sto};
+use condyle::formats::{Recording, csv};
 use condyle::tracking::{Plan, Tracking, track};
-use condyle::{Model, open, scene};
+use condyle::{Model, open};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -51,73 +52,6 @@ pub(crate) struct Track {
 enum Limits {
     Off,
     On,
-}
-
-/// The formats that a motion can be written in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum MotionFormat {
-    /// OpenSim's motion file, in degrees.
-    Mot,
-    /// OpenSim's storage file, in degrees.
-    Sto,
-    /// Comma-separated, in radians and metres.
-    Csv,
-    /// An animated scene.
-    Glb,
-}
-
-impl MotionFormat {
-    /// The format of a path: by `--to`, else by its ending.
-    pub(crate) fn of(path: &Path, to: Option<Self>) -> Result<Self, Failure> {
-        if let Some(to) = to {
-            return Ok(to);
-        }
-        match open::ending(path).as_str() {
-            "mot" => Ok(Self::Mot),
-            "sto" => Ok(Self::Sto),
-            "csv" => Ok(Self::Csv),
-            "glb" => Ok(Self::Glb),
-            _ if path == Path::new("-") => Ok(Self::Mot),
-            _ => Err(Failure::new(format!(
-                "{}: the ending names no format for a motion (known are .mot, .sto, .csv, .glb; or \
-                 give --to)",
-                path.display()
-            ))),
-        }
-    }
-
-    fn ending(self) -> &'static str {
-        match self {
-            Self::Mot => "mot",
-            Self::Sto => "sto",
-            Self::Csv => "csv",
-            Self::Glb => "glb",
-        }
-    }
-
-    /// A motion in this format.
-    pub(crate) fn encode(
-        self,
-        model: &Model,
-        motion: &condyle::Motion,
-        name: &str,
-        markers: Option<(&Recording, &[usize])>,
-    ) -> Result<Vec<u8>, Failure> {
-        let fail = |error: condyle::formats::Error| Failure::new(error.to_string());
-        match self {
-            Self::Mot | Self::Sto => {
-                Ok(sto::write(&motion.to_table(model, name)).map_err(fail)?.into_bytes())
-            }
-            Self::Csv => {
-                let mut table = motion.to_table(model, name);
-                // A table for programs: the units of the library.
-                table.values = motion.frames.concat();
-                table.angle_unit = AngleUnit::Radians;
-                Ok(csv::write(&table).map_err(fail)?.into_bytes())
-            }
-            Self::Glb => glb::write(&scene::scene(model, motion, markers)).map_err(fail),
-        }
-    }
 }
 
 impl Track {

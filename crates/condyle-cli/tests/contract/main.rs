@@ -1,0 +1,59 @@
+//! The contract of the command line: what each command reads and writes, and how it ends.
+
+#[path = "../command/mod.rs"]
+mod command;
+
+mod convert;
+mod diff;
+mod fk;
+mod info;
+mod leg;
+mod track;
+
+use command::{Answer, Folder};
+use serde_json::Value;
+
+impl Answer {
+    /// The one JSON document that standard output must be.
+    #[track_caller]
+    fn json(self) -> Value {
+        let text = self.expect(0);
+        let mut documents = serde_json::Deserializer::from_str(&text).into_iter::<Value>();
+        let value = documents.next().expect("a document").expect("valid JSON");
+        assert!(documents.next().is_none(), "more than one document: {text}");
+        value
+    }
+
+    /// Standard error of a run that refused its arguments or input, and wrote nothing.
+    #[track_caller]
+    fn refused(self) -> String {
+        assert_eq!((self.code, self.out.len()), (2, 0), "{}", self.err);
+        assert!(self.err.contains("error: "), "{}", self.err);
+        self.err
+    }
+}
+
+/// Asserts that two numbers are nearly the same.
+#[track_caller]
+fn near(found: f64, expected: f64, within: f64) {
+    assert!((found - expected).abs() <= within, "found {found}, expected {expected}");
+}
+
+/// A number of a JSON document.
+#[track_caller]
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+impl Folder {
+    /// A folder with the leg as `leg.osim`.
+    fn with_leg(name: &str) -> Self {
+        let folder = Self::new(name);
+        folder.write("leg.osim", leg::osim());
+        folder
+    }
+
+    fn read(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path().join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+    }
+}

@@ -1,0 +1,168 @@
+//! `condyle track`.
+
+use super::{Folder, leg, near, number};
+use serde_json::{Value, json};
+
+/// A recording in which every marker is seen.
+fn whole(frames: usize) -> String {
+    leg::trc(frames, |_, _| true)
+}
+
+/// Rows of a table of text, split at a separator, after the line that starts with `time`.
+fn table(text: &str, separator: char) -> (Vec<String>, Vec<Vec<f64>>) {
+    let mut lines = text.lines().skip_while(|line| !line.starts_with("time"));
+    let names = lines.next().expect("a line of names").split(separator).map(str::to_owned);
+    let rows =
+        lines.map(|line| line.split(separator).map(|c| c.parse().expect("a number")).collect());
+    (names.collect(), rows.collect())
+}
+
+#[test]
+fn a_motion_comes_back_from_its_markers() {
+    let folder = Folder::with_leg("track-motion");
+    folder.write("walk.trc", whole(25));
+    let run = folder.condyle(&["track", "leg.osim", "walk.trc", "-o", "-", "--threads", "1"]);
+    let text = run.expect(0);
+    assert!(text.contains("inDegrees=yes\n") && text.starts_with("walk\n"), "{text}");
+    let (names, rows) = table(&text, '\t');
+    let expected =
+        ["time", "hip_flexion", "knee_angle", "knee_slide", "ankle/flexion", "toe/flexion"];
+    assert_eq!(names, expected);
+    assert_eq!(rows.len(), 25);
+    for (frame, row) in rows.iter().enumerate() {
+        let t = frame as f64 / 100.0;
+        near(row[0], t, 1e-12);
+        near(row[1], leg::hip(t).to_degrees(), 1e-3);
+        near(row[2], leg::knee(t).to_degrees(), 1e-3);
+        near(row[3], 0.02 * leg::knee(t), 1e-6);
+        // Locked at its default; the toe, which nothing shows, stays at its own.
+        near(row[4], 0.1f64.to_degrees(), 1e-12);
+        near(row[5], 0.0, 1e-9);
+    }
+}
+
+#[test]
+fn the_report_is_one_document_with_what_the_contract_names() {
+    let folder = Folder::with_leg("track-report");
+    folder.write("walk.trc", whole(10));
+    let arguments =
+        ["track", "leg.osim", "walk.trc", "-o", "w.csv", "--json", "--report", "r.json"];
+    let report = folder.condyle(&[&arguments[..], &["--errors", "e.csv"]].concat()).json();
+    assert_eq!((&report["frames"], &report["markers_used"]), (&json!(10), &json!(6)));
+    assert_eq!(report["failed_frames"], json!([]));
+    for key in ["seconds", "frames_per_second", "rms_m", "max_m", "objective", "objective_markers"]
+    {
+        assert!(number(&report[key]) >= 0.0, "{key}");
+    }
+    assert!(number(&report["max_m"]) < 1e-5, "{report}");
+    let written: Value = serde_json::from_str(&folder.read("r.json")).expect("JSON");
+    assert_eq!(written, report);
+    let (names, rows) = table(&folder.read("w.csv"), ',');
+    assert_eq!(names[1], "hip_flexion");
+    // CSV is in radians.
+    near(rows[9][2], leg::knee(0.09), 2e-5);
+    let errors = folder.read("e.csv");
+    let mut lines = errors.lines();
+    assert_eq!(lines.next(), Some("time,marker,error_m"));
+    assert_eq!(lines.clone().count(), 60);
+    let first: Vec<&str> = lines.next().expect("a row").split(',').collect();
+    assert_eq!(first[..2], ["0", "HIP"]);
+    assert!(first[2].parse::<f64>().expect("metres") < 1e-5);
+}
+
+#[test]
+fn a_frame_without_markers_fails_and_the_others_do_not() {
+    let folder = Folder::with_leg("track-failed");
+    folder.write("walk.trc", leg::trc(9, |frame, _| frame != 4));
+    let run =
+        folder.condyle(&["track", "leg.osim", "walk.trc", "-o", "w.csv", "--report", "r.json"]);
+    let text = run.expect(1);
+    assert!(text.contains("1 frames not solved, the first is frame 4 (no markers)"), "{text}");
+    let report: Value = serde_json::from_str(&folder.read("r.json")).expect("JSON");
+    let failed = json!([{"frame": 4, "time": 0.04, "status": "no markers"}]);
+    assert_eq!(report["failed_frames"], failed);
+    let (_, rows) = table(&folder.read("w.csv"), ',');
+    assert_eq!(rows.len(), 9);
+    near(rows[8][1], leg::hip(0.08), 2e-5);
+}
+
+#[test]
+fn clamped_coordinates_are_held_and_others_are_not() {
+    let folder = Folder::with_leg("track-limits");
+    // The hip may not go below 0.2 now, but was there.
+    let tight = leg::osim().replace("<range>-1.5 2</range>", "<range>0.2 2</range>");
+    folder.write("tight.osim", tight).write("walk.trc", whole(3));
+    let hip = |limits: &str| {
+        let arguments = ["track", "tight.osim", "walk.trc", "-o", "w.csv", "--limits", limits];
+        folder.condyle(&arguments).expect(0);
+        table(&folder.read("w.csv"), ',').1[0][1]
+    };
+    near(hip("off"), leg::hip(0.0), 2e-5);
+    near(hip("on"), 0.2, 1e-9);
+}
+
+#[test]
+fn a_setup_brings_weights_tasks_and_times() {
+    let folder = Folder::with_leg("track-setup");
+    folder.write("walk.trc", whole(21)).write(
+        "ik.xml",
+        "<OpenSimDocument><InverseKinematicsTool><time_range>0.05 0.1</time_range>\
+         <IKTaskSet file=\"tasks.xml\"/></InverseKinematicsTool></OpenSimDocument>",
+    );
+    let marker =
+        |name: &str| format!("<IKMarkerTask name=\"{name}\"><weight>2</weight></IKMarkerTask>");
+    let tasks =
+        format!("<IKTaskSet><objects>{}{}</objects></IKTaskSet>", marker("MID"), marker("ANKLE"));
+    folder.write("tasks.xml", tasks);
+    let arguments = ["track", "leg.osim", "walk.trc", "--setup", "ik.xml", "--json", "-o", "w.csv"];
+    let report = folder.condyle(&arguments).json();
+    assert_eq!((&report["frames"], &report["markers_used"]), (&json!(6), &json!(2)));
+    let (_, rows) = table(&folder.read("w.csv"), ',');
+    near(rows[0][0], 0.05, 1e-12);
+    near(rows[5][0], 0.1, 1e-12);
+    near(rows[5][2], leg::knee(0.1), 1e-4);
+    folder.write(
+        "ik.xml",
+        "<InverseKinematicsTool><time_range>7 8</time_range></InverseKinematicsTool>",
+    );
+    let said = folder.condyle(&arguments).refused();
+    assert!(said.contains("share no marker with a positive weight"), "{said}");
+}
+
+#[test]
+fn guessed_names_are_warnings_and_strangers_an_error() {
+    let folder = Folder::with_leg("track-names");
+    let guessed = whole(2).replace("HIP", "Anna:HIP").replace("SHIN", "shin");
+    folder.write("guessed.trc", guessed);
+    let run = folder.condyle(&["track", "leg.osim", "guessed.trc", "--json"]);
+    assert!(
+        run.err.contains("marker `Anna:HIP` is taken for the model's `HIP` without its prefix")
+    );
+    assert!(run.err.contains("marker `shin` is taken for the model's `SHIN` ignoring case"));
+    assert_eq!(run.json()["markers_used"], 6);
+    let mut strangers = whole(2);
+    for (name, ..) in leg::MARKERS {
+        strangers = strangers.replace(name, &name.chars().rev().collect::<String>());
+    }
+    folder.write("strangers.trc", strangers);
+    let said = folder.condyle(&["track", "leg.osim", "strangers.trc"]).refused();
+    assert!(
+        said.contains("share no marker") && said.contains("HIP") && said.contains("PIH"),
+        "{said}"
+    );
+}
+
+#[test]
+fn several_recordings_go_to_a_folder() {
+    let folder = Folder::with_leg("track-several");
+    folder.write("a.trc", whole(3)).write("b.trc", whole(2));
+    let both = ["track", "leg.osim", "a.trc", "b.trc"];
+    let said = folder.condyle(&[&both[..], &["-o", "one.mot"]].concat()).refused();
+    assert_eq!(said, "error: several recordings need a folder for -o\n");
+    let reports = folder.condyle(&[&both[..], &["-o", "out", "--json"]].concat()).json();
+    assert_eq!((&reports[0]["frames"], &reports[1]["frames"]), (&json!(3), &json!(2)));
+    assert_eq!(table(&folder.read("out/a.mot"), '\t').1.len(), 3);
+    assert_eq!(table(&folder.read("out/b.mot"), '\t').1.len(), 2);
+    let said = folder.condyle(&["track", "leg.osim", "a.trc", "-o", "a.xyz"]).refused();
+    assert!(said.contains("a.xyz: the ending names no format for a motion"), "{said}");
+}
