@@ -9,7 +9,7 @@
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
-use crate::diagnostic::{Diagnostic, Error, Read, Warnings};
+use crate::diagnostic::{Diagnostic, Error, Place, Read, Warnings};
 use crate::table::{AngleUnit, Table};
 use crate::text::{Line, check_size, decimal, decode, lines, number};
 
@@ -20,8 +20,8 @@ use crate::text::{Line, check_size, decimal, decode, lines, number};
 ///
 /// # Errors
 ///
-/// `csv/empty`, `csv/quote`, `csv/no-names`, `csv/duplicate-column`, `csv/cell` (with line and
-/// column), `csv/too-many-cells`, `csv/short-rows`, `csv/time`.
+/// `csv/empty`, `csv/quote`, `csv/no-names`, `csv/name`, `csv/duplicate-column`, `csv/cell` (with
+/// line and column), `csv/too-many-cells`, `csv/short-rows`, `csv/time`.
 ///
 /// ```
 /// use condyle_formats::csv;
@@ -39,6 +39,7 @@ pub fn read(text: &str) -> Result<Read<Table>, Error> {
     let names_line = loop {
         let Some(line) = lines.next() else {
             return Err(Error::new("csv/empty", "there is no line of names")
+                .at(Place::at_line(1))
                 .with_help("the first line must name the columns"));
         };
         let Some(remark) = line.text.trim_start().strip_prefix('#') else { break line };
@@ -96,7 +97,7 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Read<Table>, Error> {
     Ok(read)
 }
 
-/// Writes a table: `time`, then its columns.
+/// Writes a table: `time`, then its columns, under a remark if its angles are in degrees.
 ///
 /// # Errors
 ///
@@ -117,7 +118,10 @@ pub fn write(table: &Table) -> Result<String, Error> {
     if let Some(mismatch) = table.mismatch() {
         return Err(Error::new("csv/shape", mismatch));
     }
-    let mut text = "time".to_owned();
+    let mut text = match table.angle_unit {
+        AngleUnit::Degrees => "# inDegrees=yes\ntime".to_owned(),
+        AngleUnit::Radians | AngleUnit::Unstated => "time".to_owned(),
+    };
     for column in &table.columns {
         text.push(',');
         text.push_str(&quoted(column));
@@ -227,9 +231,21 @@ fn cells(line: Line<'_>, delimiter: char) -> Result<Vec<String>, Error> {
     }
 }
 
+/// How long the name of a column may be.
+const MOST_LETTERS: usize = 1000;
+
 fn check_names(names: &[String], line: Line<'_>) -> Result<(), Error> {
     let mut seen = HashMap::with_capacity(names.len());
     for (index, name) in names.iter().enumerate() {
+        let letters = name.chars().count();
+        if letters > MOST_LETTERS || name.contains('\0') {
+            return Err(Error::new(
+                "csv/name",
+                format!("the name of column {} has {letters} letters or is binary", index + 1),
+            )
+            .at(line.place())
+            .with_help("is this a table? the first line must name the columns"));
+        }
         if let Some(first) = seen.insert(name.as_str(), index) {
             return Err(Error::new(
                 "csv/duplicate-column",

@@ -43,6 +43,7 @@ pub mod component;
 pub mod evaluate;
 pub mod limit;
 pub mod model;
+mod position;
 
 pub use component::{Component, Source};
 pub use evaluate::{Jacobian, Mode, Pose, Program, SizeMismatch};

@@ -1,5 +1,6 @@
 //! One frame: where to start, what came out.
 
+use crate::answer::{FrameAnswer, FrameStatus, better};
 use crate::problem::FrameProblem;
 use crate::robust;
 use crate::tracker::{Scratch, Tracker};
@@ -16,69 +17,6 @@ const JUMP_FLOOR: f64 = 1e-5;
 const ALIKE: f64 = 1e-9;
 /// How many first guesses such a frame gets.
 const RESCUE_GUESSES: usize = 2;
-
-/// How a frame ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FrameStatus {
-    /// The minimum was found.
-    Solved,
-    /// The solver stopped before it was sure; the posture is the best it met.
-    Uncertain,
-    /// A loop, or the range of a coupled coordinate, could not be met.
-    Infeasible,
-    /// No marker with a positive weight was seen; the posture is that of the start.
-    NoMarkers,
-}
-
-impl FrameStatus {
-    /// Whether the answer can be used as it is.
-    pub fn is_solved(self) -> bool {
-        self == Self::Solved
-    }
-
-    /// The word for it in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Solved => "solved",
-            Self::Uncertain => "uncertain",
-            Self::Infeasible => "infeasible",
-            Self::NoMarkers => "no markers",
-        }
-    }
-}
-
-/// The posture of one frame, and how near it comes to the markers.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FrameAnswer {
-    /// The stored numbers of all coordinates, coupled ones as their leaders determine them.
-    pub coordinates: Vec<f64>,
-    /// F, without the prior.
-    pub objective: f64,
-    /// Σ w |e|² in m².
-    pub weighted_squares: f64,
-    /// Distance of each marker task in metres; NaN where the marker is not seen or has no weight.
-    pub marker_errors: Vec<f64>,
-    /// Largest loop error in metres or radians.
-    pub closure_error: f64,
-    /// How it ended.
-    pub status: FrameStatus,
-    /// Iterations of the solver, all starts together.
-    pub iterations: u32,
-}
-
-impl FrameAnswer {
-    /// Root mean square of the marker errors in metres, unweighted; 0 without markers.
-    pub fn rms(&self) -> f64 {
-        let seen = self.marker_errors.iter().filter(|e| e.is_finite());
-        let (sum, n) = seen.fold((0.0, 0), |(sum, n), e| (sum + e * e, n + 1));
-        if n == 0 { 0.0 } else { (sum / f64::from(n)).sqrt() }
-    }
-
-    /// Largest marker error in metres.
-    pub fn max(&self) -> f64 {
-        self.marker_errors.iter().copied().filter(|e| e.is_finite()).fold(0.0, f64::max)
-    }
-}
 
 impl Tracker<'_> {
     /// The posture nearest to the markers of one frame, from one or several starts.
@@ -396,15 +334,5 @@ impl Tracker<'_> {
             }
         }
         Some(sum)
-    }
-}
-
-/// Whether an answer beats another: met constraints first, then a clearly lower F.
-pub(crate) fn better(a: &FrameAnswer, b: &FrameAnswer) -> bool {
-    let broken = |answer: &FrameAnswer| answer.status == FrameStatus::Infeasible;
-    match (broken(a), broken(b)) {
-        (false, true) => true,
-        (true, false) => false,
-        _ => a.objective < b.objective * (1.0 - 1e-6) - 1e-15,
     }
 }

@@ -19,22 +19,25 @@
 //! | --- | --- |
 //! | [`tasks`] | what is asked: markers, coordinate targets, weights, options |
 //! | [`Tracker`] | one model and its tasks, ready to solve frames |
-//! | [`frame`] | one frame: starts, solve, status |
+//! | [`FrameAnswer`] | one frame: posture, fit, status |
 //! | [`sequence`] | many frames: cut, solve a chunk, stitch |
 //! | [`robust`] | faulty markers: weighed down, swapped labels found |
 //!
 //! Nothing here reads a file, starts a thread, or depends on how many there are.
 
-pub mod frame;
+mod answer;
+mod frame;
 mod moments;
 mod problem;
+mod recorded;
 pub mod robust;
 pub mod sequence;
 pub mod tasks;
 mod tracker;
 
-pub use frame::{FrameAnswer, FrameStatus};
+pub use answer::{FrameAnswer, FrameStatus};
 pub use problem::PRIOR;
+pub use recorded::Recorded;
 pub use sequence::{Chunk, cut, stitch};
 pub use tasks::{CoordinateTask, MarkerTask, Options, Tasks};
 pub use tracker::{Scratch, Tracker};

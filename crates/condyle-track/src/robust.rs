@@ -5,8 +5,8 @@
 //! labels that stand for each other's marker are found because each fits the other's place: they
 //! are reported, put right, and the frames solved again.
 
-use crate::frame::FrameAnswer;
-use crate::sequence::Recorded;
+use crate::answer::FrameAnswer;
+use crate::recorded::Recorded;
 use crate::tracker::{Scratch, Tracker};
 use condyle_math::Vec3;
 use condyle_model::Mode;

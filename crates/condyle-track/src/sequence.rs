@@ -7,7 +7,8 @@
 //! 3. where a chunk's last frame disagrees with the next chunk's first, the better of the two
 //!    postures wins and the other chunk is solved again from the seam ([`stitch`]).
 
-use crate::frame::{FrameAnswer, better};
+use crate::answer::{FrameAnswer, better};
+use crate::recorded::Recorded;
 use crate::tracker::{Scratch, Tracker};
 use std::ops::Range;
 
@@ -30,18 +31,6 @@ pub fn cut(frames: usize) -> Vec<Chunk> {
         .step_by(LENGTH)
         .map(|start| Chunk { frames: start..(start + LENGTH).min(frames) })
         .collect()
-}
-
-/// The recorded markers of each frame, in the order of the marker tasks.
-pub trait Recorded: Sync {
-    /// Writes the markers of a frame.
-    fn targets(&self, frame: usize, targets: &mut Vec<Option<[f64; 3]>>);
-}
-
-impl<F: Fn(usize, &mut Vec<Option<[f64; 3]>>) + Sync> Recorded for F {
-    fn targets(&self, frame: usize, targets: &mut Vec<Option<[f64; 3]>>) {
-        self(frame, targets);
-    }
 }
 
 /// Solves the first frame of every chunk, in order.

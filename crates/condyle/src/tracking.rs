@@ -6,9 +6,10 @@ use condyle_formats::opensim::setup::{CoordinateTarget, IkSetup, IkTasks};
 use condyle_formats::{Diagnostic, Recording, Table};
 use condyle_model::Model;
 use condyle_track::robust::{self, Corrected};
-use condyle_track::sequence::{self, Recorded};
+use condyle_track::sequence;
 use condyle_track::{
-    CoordinateTask, FrameAnswer, FrameStatus, MarkerTask, Options, Scratch, Tasks, Tracker,
+    CoordinateTask, FrameAnswer, FrameStatus, MarkerTask, Options, Recorded, Scratch, Tasks,
+    Tracker,
 };
 use std::collections::HashMap;
 use std::fmt;

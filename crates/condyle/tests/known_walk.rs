@@ -52,8 +52,8 @@ fn noise_is_averaged_and_gaps_are_bridged() {
     // largest error says nothing.
     assert!(rms < 1.5, "{rms} (largest {max})");
     assert!(tracking.summary().failed.is_empty());
-    // Three coordinates of noise a marker, less what 31 free coordinates absorb of 135.
-    let expected = 0.002 * (3.0 * (1.0 - 31.0 / 135.0) as f64).sqrt();
+    // Three coordinates of noise a marker, less what 33 free coordinates absorb of 135.
+    let expected = 0.002 * f64::sqrt(3.0 * (1.0 - 33.0 / 135.0));
     let found = tracking.summary().rms;
     assert!((found / expected - 1.0).abs() < 0.05, "{found} {expected}");
 }

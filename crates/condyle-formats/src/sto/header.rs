@@ -20,6 +20,9 @@ pub(super) struct Header {
     pub(super) range: Option<[f64; 2]>,
 }
 
+/// The longest line of a header in bytes; a megabyte without a line end is no header.
+const LONGEST: usize = 1 << 20;
+
 /// Reads up to and including `endheader`.
 pub(super) fn read<'a>(
     lines: &mut impl Iterator<Item = Line<'a>>,
@@ -36,6 +39,11 @@ pub(super) fn read<'a>(
         if text.eq_ignore_ascii_case("endheader") {
             header.angle_unit = settle(key_unit, text_unit, simm, warnings);
             return Ok(header);
+        }
+        if text.len() > LONGEST {
+            return Err(Error::new("sto/no-endheader", "a line of the header has no end in sight")
+                .at(line.place())
+                .with_help("is this a motion? write `endheader` before the line of names"));
         }
         seen.get_or_insert(line);
         if text.is_empty() {
@@ -87,6 +95,7 @@ pub(super) fn read<'a>(
     }
     Err(match seen {
         None => Error::new("sto/empty", "the file is empty")
+            .at(Place::at_line(1))
             .with_help("a motion starts with a header that ends with `endheader`"),
         Some(line) => Error::new("sto/no-endheader", "no line reads `endheader`")
             .at(line.place())

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::header;
 use crate::diagnostic::{Diagnostic, Error, Place, Read, Warnings};
 use crate::table::Table;
-use crate::text::{Line, check_size, decode, lines, number};
+use crate::text::{Line, check_size, decode, last_line, lines, number};
 
 /// How cells are told apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,6 +65,7 @@ pub fn read(text: &str) -> Result<Read<Table>, Error> {
     let mut lines = lines.filter(|line| !line.is_blank());
     let Some(names_line) = lines.next() else {
         return Err(Error::new("sto/no-names", "the file ends after `endheader`")
+            .at(last_line(text))
             .with_help("a line of names must follow: `time` and one name for each column"));
     };
     let delimiter = Delimiter::of(names_line.text);

@@ -60,6 +60,12 @@ pub(crate) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> + Clone {
     })
 }
 
+/// The place of the last line that holds anything: where a file ends that should go on.
+pub(crate) fn last_line(text: &str) -> Place {
+    let end = text.trim_end().len();
+    Place::at_line(lines(&text[..end]).last().map_or(1, |line| line.number))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -71,6 +77,8 @@ mod tests {
         assert_eq!(found, [(1, 3, "a"), (2, 6, "b"), (3, 8, "c"), (4, 10, ""), (5, 11, "d")]);
         assert_eq!(lines("").count(), 0);
         assert_eq!(lines("a\n").count(), 1);
+        assert_eq!(last_line("a\r\nb\n \n"), Place::at_line(2));
+        assert_eq!(last_line(" "), Place::at_line(1));
     }
 
     #[test]

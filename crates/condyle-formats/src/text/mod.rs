@@ -6,6 +6,6 @@ mod number;
 
 pub(crate) use decode::check_size;
 pub use decode::{MAX_TEXT_BYTES, decode};
-pub(crate) use line::{Line, column_at, lines};
+pub(crate) use line::{Line, column_at, last_line, lines};
 pub use number::number;
 pub(crate) use number::{decimal, plain};

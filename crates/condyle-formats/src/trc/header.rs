@@ -1,6 +1,6 @@
 //! The lines before the first row: rate, counts, unit and labels.
 
-use crate::diagnostic::{Diagnostic, Error, Warnings};
+use crate::diagnostic::{Diagnostic, Error, Place, Warnings};
 use crate::recording::LengthUnit;
 use crate::text::{Line, number};
 
@@ -78,6 +78,7 @@ fn find_keys<'a>(
     let mut lines = lines.filter(|line| !line.is_blank());
     let Some(first) = lines.next() else {
         return Err(Error::new("trc/empty", "the file is empty")
+            .at(Place::at_line(1))
             .with_help("a TRC file starts with `PathFileType`"));
     };
     if has_keys(first) {

@@ -3,7 +3,7 @@
 use super::header::{self, Delimiter, Header};
 use crate::diagnostic::{Diagnostic, Error, Read, Warnings};
 use crate::recording::{LengthUnit, Recording};
-use crate::text::{Line, check_size, decode, lines, number};
+use crate::text::{Line, check_size, decode, last_line, lines, number};
 
 /// Choices that a TRC file itself cannot make.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -76,6 +76,7 @@ pub fn read_with(text: &str, options: Options) -> Result<Read<Recording>, Error>
     let Rows { times, mut positions, .. } = rows;
     if times.is_empty() {
         return Err(Error::new("trc/no-rows", "there are marker names, but no frames")
+            .at(last_line(text))
             .with_help("rows of frame, time and positions must follow the names"));
     }
     if let Some(declared) = header.frames

@@ -26,7 +26,7 @@ mod repair;
 pub use element::Element;
 
 use crate::diagnostic::{Error, Place, Read, Warnings};
-use crate::text::{check_size, decode};
+use crate::text::{check_size, decode, last_line};
 use repair::{Places, repair};
 
 /// How deep elements may be nested.
@@ -89,8 +89,8 @@ impl XmlDocument {
             nodes_limit: MAX_NODES,
             ..Default::default()
         };
-        let parsed =
-            roxmltree::Document::parse_with_options(&text, options).map_err(|e| explain(&e))?;
+        let parsed = roxmltree::Document::parse_with_options(&text, options)
+            .map_err(|e| explain(&e, &text))?;
         Ok(Read { value: Self::copy(&parsed)?, warnings: warnings.finish() })
     }
 
@@ -198,7 +198,7 @@ impl XmlDocument {
 }
 
 /// The parser's complaint in the words and places of this crate.
-fn explain(error: &roxmltree::Error) -> Error {
+fn explain(error: &roxmltree::Error, text: &str) -> Error {
     let position = error.pos();
     let sentence = error.to_string();
     let message = sentence.split(" at ").next().unwrap_or_default().trim().to_owned();
@@ -206,6 +206,7 @@ fn explain(error: &roxmltree::Error) -> Error {
     match error {
         roxmltree::Error::NodesLimitReached => {
             Error::new("xml/nodes", format!("the document has more than {MAX_NODES} nodes"))
+                .at(Place::at_line(1))
                 .with_help("no model or setup file needs that; is the file damaged?")
         }
         roxmltree::Error::DtdDetected => {
@@ -221,12 +222,15 @@ fn explain(error: &roxmltree::Error) -> Error {
         }
         roxmltree::Error::UnclosedRootNode => {
             Error::new("xml/syntax", "the outermost element is never closed")
-                .with_help("the file may be cut off")
+                .at(last_line(text))
+                .with_help("the file ends here; was it cut off?")
         }
-        roxmltree::Error::NoRootNode => {
-            Error::new("xml/syntax", "there is no element").with_help("this is not an XML file")
-        }
-        _ => Error::new("xml/syntax", message).at(place),
+        roxmltree::Error::NoRootNode => Error::new("xml/syntax", "there is no element")
+            .at(Place::at_line(1))
+            .with_help("this is not an XML file"),
+        _ => Error::new("xml/syntax", message)
+            .at(place)
+            .with_help("this is not well-formed XML; is the file damaged or cut off?"),
     }
 }
 

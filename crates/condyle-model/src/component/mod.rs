@@ -41,7 +41,7 @@ pub use product::Product;
 pub use rotate::Rotate;
 pub use translate::Translate;
 
-use crate::model::{ComponentId, CoordinateId};
+use crate::position::{ComponentId, CoordinateId};
 use condyle_math::{Affine, Scalar};
 
 /// Where a component's input, or a segment's motion, comes from.

@@ -6,7 +6,7 @@ use super::pose::Pose;
 use crate::component::{ConstantCurvature, Ellipsoid, Law, MOST_COMBINED};
 use crate::model::{CoordinateId, Model, SegmentId};
 use condyle_math::function::{Function, FunctionOfSeveral};
-use condyle_math::{Affine, Scalar, Vec3};
+use condyle_math::{Affine, Quat, Scalar, Vec3};
 use std::fmt;
 
 /// Whether limits move the coordinates.
@@ -140,6 +140,34 @@ impl SizeMismatch {
     }
 }
 
+/// Runs balls one after another: first all their own transforms, then the products along the tree.
+///
+/// The first loop has no step that waits for the one before it, so the divisions overlap. In the
+/// second the frame stays in registers for as long as each ball hangs on the one before: what is
+/// read back at once, in other pieces than it was written, has to wait for memory.
+#[inline]
+fn run_balls<S: Scalar>(balls: &[Instruction], pose: &mut Pose<S>) {
+    for ball in balls {
+        let Instruction::BallAt { shift, orientation, output, .. } = *ball else { continue };
+        let q = orientation as usize;
+        let q: &[S; 4] = pose.scalars[q..].first_chunk().expect("four registers");
+        pose.transforms[output as usize] = Affine::new(Quat::from(*q).to_mat3(), shift.cast());
+    }
+    let mut rest = balls.iter().peekable();
+    while let Some(Instruction::BallAt { base, .. }) = rest.peek() {
+        let mut frame = pose.transforms[*base as usize];
+        let mut last = *base;
+        while let Some(&&Instruction::BallAt { base, output, .. }) = rest.peek()
+            && base == last
+        {
+            frame = frame * pose.transforms[output as usize];
+            pose.transforms[output as usize] = frame;
+            last = output;
+            rest.next();
+        }
+    }
+}
+
 impl Program {
     /// Flattens a model. Models are checked when they are built, so this cannot fail.
     pub fn compile(model: &Model) -> Self {
@@ -192,16 +220,11 @@ impl Program {
         pose: &mut Pose<S>,
     ) -> Result<(), SizeMismatch> {
         self.load(requested, mode, pose)?;
-        for instruction in &self.instructions {
-            match *instruction {
-                Instruction::BallAt { base, shift, orientation, output } => {
-                    let q = orientation as usize;
-                    let q: &[S; 4] = pose.scalars[q..].first_chunk().expect("four registers");
-                    let turn = condyle_math::Quat::from(*q).to_mat3();
-                    let from = pose.transforms[base as usize].shifted(shift.cast());
-                    pose.transforms[output as usize] =
-                        Affine::new(from.linear * turn, from.translation);
-                }
+        let is_ball = |i: &Instruction| matches!(i, Instruction::BallAt { .. });
+        // Balls in runs, everything else one by one.
+        for run in self.instructions.chunk_by(|a, b| is_ball(a) && is_ball(b)) {
+            match run[0] {
+                Instruction::BallAt { .. } => run_balls(run, pose),
                 Instruction::Chain { base, first, end, output } => {
                     let from = if base == NO_BASE {
                         Affine::identity()
@@ -212,7 +235,7 @@ impl Program {
                     pose.transforms[output as usize] =
                         run_chain(self, steps, from, &pose.scalars, &pose.transforms, &mut Silent);
                 }
-                _ => self.run_scalar(instruction, &mut pose.scalars),
+                _ => self.run_scalar(&run[0], &mut pose.scalars),
             }
         }
         Ok(())

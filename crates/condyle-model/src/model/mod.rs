@@ -18,42 +18,11 @@ pub use segment::Segment;
 
 pub(crate) use check::{Node, dependency_order};
 
+pub use crate::position::{ComponentId, CoordinateId, JointSetId, SegmentId};
+
 use crate::component::Component;
 use condyle_math::{Quat, Vec3};
 use std::fmt;
-
-macro_rules! position {
-    ($(#[$doc:meta])* $name:ident) => {
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-        pub struct $name(pub(crate) u32);
-
-        impl $name {
-            /// The position, counted from 0 in the order of the model.
-            #[inline(always)]
-            pub fn index(self) -> usize {
-                self.0 as usize
-            }
-        }
-    };
-}
-
-position!(
-    /// The position of a segment in its model.
-    SegmentId
-);
-position!(
-    /// The position of a coordinate in its model.
-    CoordinateId
-);
-position!(
-    /// The position of a joint set in its model.
-    JointSetId
-);
-position!(
-    /// The position of a component in its model.
-    ComponentId
-);
 
 /// The axis of the world that points up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

@@ -58,7 +58,7 @@ fn body(
     element: Element<'_>,
     number: usize,
 ) -> Result<(Base, Affine), Error> {
-    let names = [format!("body_{number}"), format!("frame_{number}")];
+    let names = [format!("body_{number}"), format!("frame{number}"), format!("frame_{number}")];
     let reference = names.iter().find_map(|name| {
         let plain = element.child(name).filter(|e| !e.text().is_empty());
         Frames::socket(element, name).or(plain)

@@ -37,8 +37,8 @@ enum Factor {
 pub(super) fn build(reader: &mut Reader<'_, '_>, joint: &PlacedJoint<'_>) -> Result<(), Error> {
     let set = reader.builder.joint_set(&joint.name);
     let element = joint.element;
-    let coordinates = Coordinates::read(reader, set, element)?;
-    let factors = factors(reader, set, element, &coordinates)?;
+    let coordinates = Coordinates::read(reader, set, joint)?;
+    let factors = factors(reader, set, joint, &coordinates)?;
     if factors.is_empty() {
         return Ok(());
     }
@@ -83,32 +83,17 @@ struct Coordinates<'d> {
     ids: Vec<(String, CoordinateId)>,
 }
 
-/// Coordinates of the joints that have a fixed number of them: suffix and kind.
-fn standard(joint: &str) -> &'static [(&'static str, CoordinateKind)] {
-    use CoordinateKind::{Rotation, Translation};
+/// The coordinates of the joints that have a fixed number of them.
+fn standard(joint: &str) -> &'static [CoordinateKind] {
+    use CoordinateKind::{Rotation as R, Translation as T};
     match joint {
-        "PinJoint" => &[("rz", Rotation)],
-        "SliderJoint" => &[("tx", Translation)],
-        "UniversalJoint" => &[("rx", Rotation), ("ry", Rotation)],
-        "BallJoint" | "GimbalJoint" | "EllipsoidJoint" => {
-            &[("rx", Rotation), ("ry", Rotation), ("rz", Rotation)]
-        }
-        "PlanarJoint" => &[("rz", Rotation), ("tx", Translation), ("ty", Translation)],
-        "FreeJoint" => &[
-            ("rx", Rotation),
-            ("ry", Rotation),
-            ("rz", Rotation),
-            ("tx", Translation),
-            ("ty", Translation),
-            ("tz", Translation),
-        ],
-        "ScapulothoracicJoint" => &[
-            ("abduction", Rotation),
-            ("elevation", Rotation),
-            ("upwardrotation", Rotation),
-            ("winging", Rotation),
-        ],
-        "ConstantCurvatureJoint" => &[("rx", Rotation), ("rz", Rotation), ("ry", Rotation)],
+        "PinJoint" => &[R],
+        "SliderJoint" => &[T],
+        "UniversalJoint" => &[R, R],
+        "BallJoint" | "GimbalJoint" | "EllipsoidJoint" | "ConstantCurvatureJoint" => &[R, R, R],
+        "PlanarJoint" => &[R, T, T],
+        "FreeJoint" => &[R, R, R, T, T, T],
+        "ScapulothoracicJoint" => &[R, R, R, R],
         _ => &[],
     }
 }
@@ -117,27 +102,23 @@ impl<'d> Coordinates<'d> {
     fn read(
         reader: &mut Reader<'_, '_>,
         set: JointSetId,
-        joint: Element<'d>,
+        placed: &PlacedJoint<'d>,
     ) -> Result<Self, Error> {
+        let joint = placed.element;
         let list = joint.child("coordinates").or_else(|| {
             let set = joint.child("CoordinateSet")?;
             Some(set.child("objects").unwrap_or(set))
         });
         let elements: Vec<Element<'d>> =
             list.into_iter().flat_map(|l| l.children_named("Coordinate")).collect();
-        let standard = standard(joint.name());
-        let count = if joint.is("CustomJoint") { elements.len() } else { standard.len() };
+        let standard = standard(placed.kind);
+        let count = if placed.kind == "CustomJoint" { elements.len() } else { standard.len() };
         let mut coordinates = Self { elements, ids: vec![] };
         for index in 0..count {
             let element = coordinates.elements.get(index).copied();
-            let suffix = standard.get(index).map(|(suffix, _)| *suffix);
             let name = match element.and_then(|e| e.attribute("name")).filter(|n| !n.is_empty()) {
                 Some(name) => name.to_owned(),
-                None => format!(
-                    "{}_{}",
-                    joint.attribute("name").unwrap_or("joint"),
-                    suffix.unwrap_or("q")
-                ),
+                None => format!("{}_coord_{index}", placed.name),
             };
             if coordinates.ids.iter().any(|(known, _)| *known == name) {
                 return Err(element
@@ -148,7 +129,7 @@ impl<'d> Coordinates<'d> {
                     )
                     .with_help("give each coordinate of a joint a name of its own"));
             }
-            let kind = standard.get(index).map_or(CoordinateKind::Other, |(_, kind)| *kind);
+            let kind = standard.get(index).copied().unwrap_or(CoordinateKind::Other);
             let id = reader.builder.coordinate(set, &name, kind);
             if let Some(element) = element {
                 read_properties(reader, element, id)?;
@@ -228,14 +209,15 @@ fn read_properties(
 fn factors(
     reader: &mut Reader<'_, '_>,
     set: JointSetId,
-    element: Element<'_>,
+    joint: &PlacedJoint<'_>,
     coordinates: &Coordinates<'_>,
 ) -> Result<Vec<Factor>, Error> {
+    let element = joint.element;
     let q = |i: usize| coordinates.source(i);
     let turn = |i: usize, axis: Vec3| Factor::Turn(q(i), axis);
     let slide = |i: usize, axis: Vec3| Factor::Slide(q(i), axis);
     let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
-    Ok(match element.name() {
+    Ok(match joint.kind {
         "WeldJoint" => vec![],
         "PinJoint" => vec![turn(0, z)],
         "SliderJoint" => vec![slide(0, x)],
@@ -296,15 +278,9 @@ fn custom(
     let mut turns = vec![];
     let mut slides = vec![];
     let mut kinds: Vec<CoordinateKind> = vec![CoordinateKind::Other; coordinates.ids.len()];
-    let holder = element.child("SpatialTransform").or_else(|| {
-        let set = element.child("TransformAxisSet")?;
-        Some(set.child("objects").unwrap_or(set))
-    });
-    let axes: Vec<Element<'_>> =
-        holder.into_iter().flat_map(|h| h.children_named("TransformAxis")).collect();
-    for (index, &axis_element) in axes.iter().enumerate() {
-        let rotation = axis_element.child_bool("is_rotation")?.unwrap_or(index < 3);
-        let default = [Vec3::X, Vec3::Y, Vec3::Z][index % 3];
+    for (place, axis_element) in axes(element) {
+        let rotation = axis_element.child_bool("is_rotation")?.unwrap_or(place < 3);
+        let default = [Vec3::X, Vec3::Y, Vec3::Z][place % 3];
         let axis = match axis_element.child("axis") {
             Some(_) => triple(axis_element, "axis")?,
             None => default,
@@ -317,9 +293,18 @@ fn custom(
             inputs.push(coordinates.named(element, at, name)?);
         }
         let function = function::inside(axis_element)?;
+        if function.is_none() && !inputs.is_empty() {
+            reader.warn(
+                "osim/no-function",
+                axis_element,
+                format!("{} has coordinates but no function of them", axis_element.describe()),
+                "it does not move; add a function such as <LinearFunction>",
+            );
+            continue;
+        }
         note_kind(&mut kinds, coordinates, &inputs, function.as_ref(), rotation);
         let name = axis_element.attribute("name").filter(|n| !n.is_empty());
-        let name = name.map_or_else(|| format!("axis_{}", index + 1), str::to_owned);
+        let name = name.map_or_else(|| format!("axis_{}", place + 1), str::to_owned);
         let Some(amount) = amount(reader, set, axis_element, &name, &inputs, function)? else {
             continue;
         };
@@ -336,6 +321,23 @@ fn custom(
     Ok(slides)
 }
 
+/// The axes of a custom joint with their places, rotations from 0 and translations from 3: by name
+/// where the names are OpenSim's own, else as they stand.
+fn axes(joint: Element<'_>) -> Vec<(usize, Element<'_>)> {
+    const NAMES: [&str; 6] =
+        ["rotation1", "rotation2", "rotation3", "translation1", "translation2", "translation3"];
+    let holder = joint.child("SpatialTransform").or_else(|| {
+        let set = joint.child("TransformAxisSet")?;
+        Some(set.child("objects").unwrap_or(set))
+    });
+    let found = holder.into_iter().flat_map(|h| h.children_named("TransformAxis"));
+    let place = |axis: Element<'_>| NAMES.iter().position(|n| Some(*n) == axis.attribute("name"));
+    let mut axes: Vec<_> =
+        found.enumerate().map(|(i, axis)| (place(axis).unwrap_or(i), axis)).collect();
+    axes.sort_by_key(|(place, _)| *place);
+    axes
+}
+
 /// OpenSim calls a coordinate rotational (translational) if some axis takes it as it is, up to
 /// sign, as its angle (distance), the last such axis deciding; all others are coupled, and files
 /// hold them without degrees.
@@ -347,11 +349,10 @@ fn note_kind(
     rotation: bool,
 ) {
     let plain = match function {
-        None => true,
         Some(AnyFunction::One(Function { factor, curve: Curve::Linear { slope, .. } })) => {
             *factor == 1.0 && slope.abs() == 1.0
         }
-        Some(_) => false,
+        _ => false,
     };
     let [id] = inputs else { return };
     if let Some(index) = coordinates.ids.iter().position(|(_, known)| known == id)
@@ -385,9 +386,7 @@ fn amount(
             .with_help("list as many coordinates as the function has arguments")
     };
     match (&sources[..], function) {
-        ([], None) => Ok(None),
-        ([one], None) => Ok(Some(*one)),
-        (_, None) => Err(mismatch(1)),
+        (_, None) => Ok(None),
         ([one], Some(AnyFunction::One(function))) => {
             Ok(Some(reader.builder.map(set, name, *one, function)))
         }

@@ -1,10 +1,11 @@
 //! Which joint carries which body: the file's joints as a tree that grows from the ground.
 //!
 //! A joint may be stated from either end, and a body may hang on two joints. The tree takes each
-//! body once, by the joint met first on the way from the ground; a joint whose child is already
-//! there but whose parent is not is taken backwards, and a joint between two bodies that are both
-//! there closes a loop: it carries a massless double of its child, which a closure ties to the
-//! child itself.
+//! body once, by the fewest joints from the ground and, among those, by the joint stated first; a
+//! joint whose child is already there but whose parent is not is taken backwards, and a joint
+//! between two bodies that are both there closes a loop: it carries a massless double of its child,
+//! which a closure ties to the child itself. Bodies that no joint connects to the ground get a free
+//! joint to it. These are the choices of OpenSim, whose coordinates are thus ours.
 
 use super::{Base, Reader};
 use crate::diagnostic::Error;
@@ -13,11 +14,13 @@ use crate::xml::Element;
 use condyle_math::{Affine, EulerOrder, Vec3};
 use condyle_model::SegmentId;
 use condyle_model::model::{Closure, Condition};
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, HashSet};
 
 /// A joint with its place in the tree.
 pub(super) struct PlacedJoint<'d> {
     pub element: Element<'d>,
+    /// Its type, such as `PinJoint`.
+    pub kind: &'d str,
     pub name: String,
     /// The segment that it moves.
     pub moved: SegmentId,
@@ -27,6 +30,7 @@ pub(super) struct PlacedJoint<'d> {
 
 struct Stated<'d> {
     element: Element<'d>,
+    kind: &'d str,
     name: String,
     parent: (Base, Affine),
     child: (Base, Affine),
@@ -34,59 +38,66 @@ struct Stated<'d> {
 
 /// Finds all joints, hangs every segment on its parent, and sets the joint frames.
 pub(super) fn collect<'d>(reader: &mut Reader<'d, '_>) -> Result<Vec<PlacedJoint<'d>>, Error> {
-    let stated = stated_joints(reader)?;
-    let bodies = reader.frames.bodies().count();
-    let number = |base: Base| base.map_or(bodies, SegmentId::index);
-    let mut touching: Vec<Vec<usize>> = vec![vec![]; bodies + 1];
+    let mut stated = stated_joints(reader)?;
+    let bodies: Vec<(Element<'d>, Base)> = reader.frames.bodies().collect();
+    let ground = bodies.len();
+    let number = |base: Base| base.map_or(ground, SegmentId::index);
+    let mut touching: Vec<Vec<usize>> = vec![vec![]; ground + 1];
+    let mut children = vec![0usize; ground];
+    let mut carried = vec![false; ground];
     for (index, joint) in stated.iter().enumerate() {
-        touching[number(joint.parent.0)].push(index);
-        touching[number(joint.child.0)].push(index);
+        let (parent, child) = (number(joint.parent.0), number(joint.child.0));
+        touching[parent].push(index);
+        touching[child].push(index);
+        if parent < ground {
+            children[parent] += 1;
+        }
+        if child < ground {
+            carried[child] = true;
+        }
     }
-    let mut placed = vec![false; bodies + 1];
+    let mut placed = vec![false; ground + 1];
     let mut how: Vec<Option<bool>> = vec![None; stated.len()];
-    let elements: Vec<Element<'d>> = reader.frames.bodies().map(|(element, _)| element).collect();
-    let carried: std::collections::HashSet<usize> =
-        stated.iter().map(|joint| number(joint.child.0)).collect();
-    // The ground, then every body that no joint carries.
-    let roots = std::iter::once(bodies).chain((0..bodies).filter(|body| !carried.contains(body)));
-    for root in roots {
-        if placed[root] {
-            continue;
-        }
-        placed[root] = true;
-        if let Some(&element) = elements.get(root) {
-            reader.warn(
-                "osim/unconnected-body",
-                element,
-                format!("{} is not connected to the ground by any joint", element.describe()),
-                "it is kept at the ground's origin",
-            );
-        }
-        let mut queue = VecDeque::from([root]);
-        while let Some(here) = queue.pop_front() {
-            for backwards in [false, true] {
-                for &index in &touching[here] {
-                    let joint = &stated[index];
-                    let (from, to) = (number(joint.parent.0), number(joint.child.0));
-                    let (from, to) = if backwards { (to, from) } else { (from, to) };
-                    if how[index].is_none() && from == here && !placed[to] {
-                        how[index] = Some(backwards);
-                        placed[to] = true;
-                        queue.push_back(to);
-                    }
-                }
+    placed[ground] = true;
+    let mut level = vec![ground];
+    // Bodies that may have to stand free, the likeliest base first: one that no joint carries, then
+    // the one that carries most.
+    let mut bases: Vec<usize> = (0..ground).collect();
+    bases.sort_by_key(|&body| (carried[body], std::cmp::Reverse(children[body])));
+    let mut bases = bases.into_iter();
+    loop {
+        while !level.is_empty() {
+            let reachable: BTreeSet<usize> =
+                level.iter().flat_map(|&body| touching[body].iter().copied()).collect();
+            let here: HashSet<usize> = level.drain(..).collect();
+            for index in reachable {
+                let (from, to) = (number(stated[index].parent.0), number(stated[index].child.0));
+                let (backwards, next) = match (placed[from], placed[to]) {
+                    (true, false) if here.contains(&from) => (false, to),
+                    (false, true) if here.contains(&to) => (true, from),
+                    _ => continue,
+                };
+                how[index] = Some(backwards);
+                placed[next] = true;
+                level.push(next);
             }
         }
+        let Some(base) = bases.find(|&body| !placed[body]) else { break };
+        let (element, segment) = bodies[base];
+        reader.warn(
+            "osim/unconnected-body",
+            element,
+            format!("{} is not connected to the ground by any joint", element.describe()),
+            "it can move freely, as if a FreeJoint connected it",
+        );
+        let name = format!("free_{}", element.attribute("name").unwrap_or_default());
+        let [parent, child] = [(None, Affine::IDENTITY), (segment, Affine::IDENTITY)];
+        stated.push(Stated { element, kind: "FreeJoint", name, parent, child });
+        how.push(Some(false));
+        placed[base] = true;
+        level.push(base);
     }
-    if let Some(root) = (0..bodies).find(|&body| !placed[body]) {
-        let element = elements[root];
-        return Err(element
-            .error(
-                "osim/body-cycle",
-                format!("{} is its own ancestor by its joints", element.describe()),
-            )
-            .with_help("connect one body of the circle to the ground"));
-    }
+    name_apart(&mut stated);
     let mut joints = vec![];
     for (joint, how) in stated.into_iter().zip(how) {
         joints.push(place(reader, joint, how)?);
@@ -111,7 +122,7 @@ fn stated_joints<'d>(reader: &mut Reader<'d, '_>) -> Result<Vec<Stated<'d>>, Err
         let parent = reader.frames.of_part(element, "parent_frame", "parent_body")?;
         let child = reader.frames.of_part(element, "child_frame", "child_body")?;
         let name = element.attribute("name").unwrap_or_default().to_owned();
-        stated.push(Stated { element, name, parent, child });
+        stated.push(Stated { element, kind: element.name(), name, parent, child });
     }
     let bodies: Vec<(Element<'d>, Base)> = reader.frames.bodies().collect();
     for (body, base) in bodies {
@@ -131,18 +142,26 @@ fn stated_joints<'d>(reader: &mut Reader<'d, '_>) -> Result<Vec<Stated<'d>>, Err
         let own = body.attribute("name").unwrap_or_default();
         let name = element.attribute("name").filter(|n| !n.is_empty());
         let name = name.map_or_else(|| format!("{own}_joint"), str::to_owned);
-        stated.push(Stated { element, name, parent, child });
-    }
-    // Unnamed or twice-named joints get names of their own.
-    let mut seen = std::collections::HashMap::<String, usize>::new();
-    for joint in &mut stated {
-        let count = seen.entry(joint.name.clone()).or_default();
-        *count += 1;
-        if *count > 1 || joint.name.is_empty() {
-            joint.name = format!("{}#{count}", joint.name);
-        }
+        stated.push(Stated { element, kind: element.name(), name, parent, child });
     }
     Ok(stated)
+}
+
+/// Gives unnamed and twice-named joints names of their own: `hip`, `hip_0`, `hip_1`.
+fn name_apart(stated: &mut [Stated<'_>]) {
+    let mut taken: HashSet<String> = stated.iter().map(|joint| joint.name.clone()).collect();
+    let mut seen = HashSet::new();
+    for joint in stated {
+        if joint.name.is_empty() {
+            joint.name = "joint".to_owned();
+        }
+        if !seen.insert(joint.name.clone()) {
+            let fresh = (0..).map(|n| format!("{}_{n}", joint.name)).find(|n| !taken.contains(n));
+            joint.name = fresh.unwrap_or_default();
+            taken.insert(joint.name.clone());
+            seen.insert(joint.name.clone());
+        }
+    }
 }
 
 fn place<'d>(
@@ -150,7 +169,7 @@ fn place<'d>(
     joint: Stated<'d>,
     how: Option<bool>,
 ) -> Result<PlacedJoint<'d>, Error> {
-    let Stated { element, name, parent, child } = joint;
+    let Stated { element, kind, name, parent, child } = joint;
     // Before version 4 a joint could say itself that it is stated from child to parent.
     let reversed = element.child_bool("reverse")?.unwrap_or(false);
     let (from, to, backwards) = match how {
@@ -178,5 +197,5 @@ fn place<'d>(
     };
     reader.builder.set_parent(moved, from.0);
     reader.builder.place_joint_frames(moved, from.1, to.1);
-    Ok(PlacedJoint { element, name, moved, backwards: backwards != reversed })
+    Ok(PlacedJoint { element, kind, name, moved, backwards: backwards != reversed })
 }
