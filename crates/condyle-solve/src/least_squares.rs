@@ -62,7 +62,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { tolerance: 1e-6, floor: 1e-18, feasibility: 1e-8, iterations: 60, trust: 0.5 }
+        Self { tolerance: 1e-6, floor: 1e-18, feasibility: 1e-7, iterations: 60, trust: 0.5 }
     }
 }
 
@@ -107,9 +107,40 @@ pub struct Solver {
     inequalities: Vec<f64>,
     trial_equalities: Vec<f64>,
     trial_inequalities: Vec<f64>,
+    elimination: Elimination,
+    /// How far to go along each orthonormal equality row.
+    equality_steps: Vec<f64>,
     equality_values: Vec<f64>,
     inequality_values: Vec<f64>,
 }
+
+/// How the equality rows were made orthonormal, to do the same to their values.
+#[derive(Debug)]
+struct Elimination {
+    rank: usize,
+    picks: Vec<usize>,
+    sizes: Vec<f64>,
+    along: Vec<f64>,
+}
+
+impl Elimination {
+    /// Turns values of the original rows into those of the orthonormal ones; 0 for dropped rows.
+    fn apply(&self, values: &mut [f64]) {
+        let m = values.len();
+        for i in 0..self.rank {
+            values.swap(i, self.picks[i]);
+            values[i] /= self.sizes[i];
+            for k in i + 1..m {
+                values[k] -= self.along[i * m + k] * values[i];
+            }
+        }
+        values[self.rank..].fill(0.0);
+    }
+}
+
+/// An equality row that the others span to within this share of its length adds nothing: loops of
+/// a symmetric or planar model often say the same thing twice.
+const DEPENDENT: f64 = 1e-7;
 
 /// The trust box never grows beyond this many units of `scale`.
 const WIDEST: f64 = 2.0;
@@ -138,6 +169,13 @@ impl Solver {
             inequalities: vec![0.0; inequalities],
             trial_equalities: vec![0.0; equalities],
             trial_inequalities: vec![0.0; inequalities],
+            elimination: Elimination {
+                rank: 0,
+                picks: vec![0; equalities],
+                sizes: vec![0.0; equalities],
+                along: vec![0.0; equalities * equalities],
+            },
+            equality_steps: vec![0.0; equalities],
             equality_values: vec![0.0; equalities],
             inequality_values: vec![0.0; inequalities],
         }
@@ -175,6 +213,7 @@ impl Solver {
             summary.iterations += 1;
             if fresh {
                 problem.linearise(&mut self.local);
+                self.orthonormalise_equalities();
                 fresh = false;
             }
             let Some(relaxed) = self.propose(trust) else {
@@ -186,11 +225,18 @@ impl Solver {
             let infeasible = sum_violation(&self.equalities, &self.inequalities);
             let small = promised <= options.tolerance * objective + options.floor;
             let last = small && !relaxed && violation <= options.feasibility;
-            let trial = problem.evaluate(
+            let mut trial = problem.evaluate(
                 &self.step,
                 &mut self.trial_equalities,
                 &mut self.trial_inequalities,
             );
+            if self.bend(options.feasibility) {
+                trial = problem.evaluate(
+                    &self.step,
+                    &mut self.trial_equalities,
+                    &mut self.trial_inequalities,
+                );
+            }
             let trial_infeasible = sum_violation(&self.trial_equalities, &self.trial_inequalities);
             let gained = objective - trial + penalty * (infeasible - trial_infeasible);
             let expected = promised + penalty * infeasible * if relaxed { 0.1 } else { 1.0 };
@@ -235,6 +281,78 @@ impl Solver {
         summary
     }
 
+    /// Replaces the equality rows C d = -c by orthonormal ones that say the same, and those that
+    /// others span already by zeros (Gram-Schmidt, the longest remaining row first).
+    fn orthonormalise_equalities(&mut self) {
+        let n = self.step.len();
+        let rows = &mut self.local.equality_rows;
+        let m = self.equality_steps.len();
+        self.elimination.rank = 0;
+        let length = |row: &[f64]| row.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let longest = rows.chunks_exact(n.max(1)).map(length).fold(0.0, f64::max);
+        for i in 0..m {
+            // Rows i.. are orthogonal to those before; take the longest next.
+            let norm = |k: usize, rows: &[f64]| length(&rows[k * n..(k + 1) * n]);
+            let mut pick = i;
+            for k in i + 1..m {
+                if norm(k, rows) > norm(pick, rows) {
+                    pick = k;
+                }
+            }
+            for j in 0..n {
+                rows.swap(i * n + j, pick * n + j);
+            }
+            let size = norm(i, rows);
+            if size <= DEPENDENT * longest || size == 0.0 {
+                rows[i * n..].fill(0.0);
+                break;
+            }
+            self.elimination.rank = i + 1;
+            self.elimination.picks[i] = pick;
+            self.elimination.sizes[i] = size;
+            rows[i * n..(i + 1) * n].iter_mut().for_each(|v| *v /= size);
+            let (done, rest) = rows.split_at_mut((i + 1) * n);
+            let unit = &done[i * n..];
+            for (k, row) in rest.chunks_exact_mut(n).enumerate() {
+                let along: f64 = row.iter().zip(unit).map(|(a, b)| a * b).sum();
+                row.iter_mut().zip(unit).for_each(|(a, b)| *a -= along * b);
+                self.elimination.along[i * m + i + 1 + k] = along;
+            }
+        }
+        for (step, c) in self.equality_steps.iter_mut().zip(&self.equalities) {
+            *step = -c;
+        }
+        self.elimination.apply(&mut self.equality_steps);
+    }
+
+    /// Bends a step whose trial point left the equalities back towards them, by the shortest way;
+    /// whether it did.
+    ///
+    /// Without this a straight step along a curved constraint is refused over and over, however
+    /// good it is (the effect of Maratos).
+    fn bend(&mut self, feasibility: f64) -> bool {
+        let off = self.trial_equalities.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
+        if !off.is_finite() || off <= 0.1 * feasibility {
+            return false;
+        }
+        for (value, c) in self.equality_values.iter_mut().zip(&self.trial_equalities) {
+            *value = -c;
+        }
+        self.elimination.apply(&mut self.equality_values);
+        let n = self.step.len();
+        for (row, along) in
+            self.local.equality_rows.chunks_exact(n.max(1)).zip(&self.equality_values)
+        {
+            for (d, r) in self.step.iter_mut().zip(row) {
+                *d += along * r;
+            }
+        }
+        for i in 0..n {
+            self.step[i] = self.step[i].max(self.local.lower[i]).min(self.local.upper[i]);
+        }
+        true
+    }
+
     /// Solves the quadratic program within the trust box; whether the equalities were relaxed.
     ///
     /// A box too narrow to reach the equalities asks for a part of the way only.
@@ -264,8 +382,8 @@ impl Solver {
     /// Solves the program as it stands; whether its rows had to be relaxed.
     fn solve_program(&mut self) -> Result<bool, Status> {
         for share in [1.0, 0.1, 0.0] {
-            for (value, c) in self.equality_values.iter_mut().zip(&self.equalities) {
-                *value = -share * c;
+            for (value, full) in self.equality_values.iter_mut().zip(&self.equality_steps) {
+                *value = share * full;
             }
             for (value, g) in self.inequality_values.iter_mut().zip(&self.inequalities) {
                 *value = if *g < 0.0 { -share * g } else { -g };
