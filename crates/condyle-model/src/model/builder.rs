@@ -128,6 +128,11 @@ impl ModelBuilder {
         (index < self.model.coordinates.len()).then_some(CoordinateId(index as u32))
     }
 
+    /// The position of the segment that was made as number `index`, counted from 0.
+    pub fn segment_at(&self, index: usize) -> Option<SegmentId> {
+        (index < self.model.segments.len()).then_some(SegmentId(index as u32))
+    }
+
     /// A component; its first output is returned.
     pub fn component(&mut self, set: JointSetId, name: &str, component: Component) -> Source {
         self.model.components.push(NamedComponent {
