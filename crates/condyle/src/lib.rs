@@ -63,3 +63,8 @@ pub use condyle_model::{
     ModelBuilder, NameError, Pose, Program, Range, SegmentId, Source,
 };
 pub use motion::Motion;
+
+/// The README's examples, run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+pub struct Readme;

@@ -5,7 +5,7 @@
 //! [`Curve`] times a constant factor. Laws of several coordinates are a [`FunctionOfSeveral`].
 //!
 //! Each answers with its value and its exact derivative, and is applied to any
-//! [`Scalar`](crate::Scalar) through [`Scalar::chain`](crate::Scalar::chain).
+//! [`Scalar`] through [`Scalar::chain`].
 
 mod piecewise_linear;
 mod polynomial;

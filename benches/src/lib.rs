@@ -1,0 +1,15 @@
+//! What the benches share: models and recordings with invented numbers, a clock, and tables.
+//!
+//! Every bench prints its figures beside a bound that is measured in the same run, so that a busy
+//! machine moves both. What gates is not a clock but a count of instructions: see
+//! `cargo xtask instructions` and [`kernels`].
+
+pub mod arguments;
+pub mod bare_products;
+pub mod chain;
+pub mod clock;
+pub mod full_body;
+pub mod kernels;
+pub mod random;
+pub mod table;
+pub mod walk;

@@ -1,0 +1,37 @@
+//! The checks, one file each, in the order in which CI runs them: quick ones first.
+
+mod architecture;
+mod clippy;
+mod deny;
+mod doc;
+mod fmt;
+mod instructions;
+mod test;
+
+use crate::outcome::{Context, Outcome};
+
+/// A check by name.
+pub(crate) struct Check {
+    pub(crate) name: &'static str,
+    pub(crate) what: &'static str,
+    pub(crate) run: fn(&Context) -> Outcome,
+}
+
+/// All checks.
+pub(crate) const CHECKS: &[Check] = &[
+    Check { name: "fmt", what: "the code is formatted", run: fmt::run },
+    Check {
+        name: "architecture",
+        what: "the map is true, the floors hold",
+        run: architecture::run,
+    },
+    Check { name: "deny", what: "licences, sources and doubles of dependencies", run: deny::run },
+    Check { name: "clippy", what: "no warning in any target", run: clippy::run },
+    Check { name: "doc", what: "the documentation builds without a warning", run: doc::run },
+    Check { name: "test", what: "the README's test command", run: test::run },
+    Check {
+        name: "instructions",
+        what: "kernels take no more than before",
+        run: instructions::run,
+    },
+];
