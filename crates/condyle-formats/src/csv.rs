@@ -363,12 +363,13 @@ mod tests {
     #[test]
     fn faults_are_placed() {
         for (text, said) in [
-            ("", "there is no line of names (the first line must name the columns)"),
+            ("", "line 1: there is no line of names (the first line must name the columns)"),
             ("time,a\n0,abc\n", "line 2, column 3: `abc` in column `a` is not a number"),
             ("time,a\n0,1,2\n", "line 2: the row has too many cells (expected 2, found 3)"),
             ("time,a,a\n", "line 1: two columns are called `a`, the 1. and the 2."),
             ("0,1\n", "line 1: the first line holds numbers"),
             ("time,a\n1,1\n0,1\n", "line 3: time goes back from 1 s to 0 s"),
+            ("time,a\0b\n", "line 1: the name of column 1 has 3 letters or is binary"),
             ("time,\"a\n", "line 1, column 6: a quoted cell does not end on its line"),
             ("time,\"a\"b\n", "line 1, column 9: text follows a quoted cell"),
         ] {

@@ -108,7 +108,7 @@ fn broken_recordings_say_so() {
     let error = |name| trc::from_bytes(&bytes(&folder, name)).unwrap_err().to_string();
     assert_eq!(
         error("trc/btk_Empty.trc"),
-        "the file is empty (a TRC file starts with `PathFileType`)"
+        "line 1: the file is empty (a TRC file starts with `PathFileType`)"
     );
     assert_eq!(
         error("trc/btk_Truncated.trc"),

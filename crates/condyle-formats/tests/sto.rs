@@ -145,7 +145,7 @@ fn a_repeated_time_is_a_warning() {
 #[test]
 fn faults_say_where_and_what_would_be_right() {
     for (body, said) in [
-        ("", "the file ends after `endheader`"),
+        ("", "line 3: the file ends after `endheader`"),
         ("a\tb\n", "line 4: the first column is not `time`"),
         (
             "time\tknee\thip\tknee\n",

@@ -117,7 +117,7 @@ fn counts_in_the_header_do_not_rule() {
     assert_eq!(read.value.frames(), 2);
     assert_eq!(
         read.warnings[0].to_string(),
-        "NumFrames says 1, 2 rows follow (the rows are right)"
+        "line 3: NumFrames says 1, 2 rows follow (the rows are right)"
     );
     let read = with("mm", "A\t\t\tB\t\t\tC", "", "1\t0\t1\t2\t3\t4\t5\t6\t7\t8\t9\n").unwrap();
     assert_eq!(
@@ -188,7 +188,7 @@ fn a_wrong_unit_is_suspected() {
     let large = with("m", "A\t\t\tB", AXES, "1\t0\t0\t0\t0\t0\t1700\t0\n").unwrap();
     assert_eq!(
         large.warnings[0].to_string(),
-        "the markers of a frame span 1.7000e3 m (is the unit `m` right?)"
+        "line 3: the markers of a frame span 1.7000e3 m (is the unit `m` right?)"
     );
     let small = with("mm", "A\t\t\tB", AXES, "1\t0\t0\t0\t0\t0\t1.7\t0\n").unwrap();
     assert_eq!(codes(&small), ["trc/size"]);
@@ -281,7 +281,7 @@ fn faults_say_where_and_what_would_be_right() {
         ),
         ("1\t\t1\t2\t3\n", "line 7: the row has no time (write the seconds in the second cell)"),
         ("x\t0\t1\t2\t3\n", "line 7, column 1: `x` is not a number"),
-        ("", "there are marker names, but no frames"),
+        ("", "line 5: there are marker names, but no frames"),
     ] {
         let error = with_rows(rows).unwrap_err().to_string();
         assert!(error.starts_with(said), "{rows:?}: {error}");

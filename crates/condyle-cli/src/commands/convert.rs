@@ -84,12 +84,12 @@ impl Convert {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
         let target = Target::of(&self.output, self.to)?;
         let bytes = match open::ending(&self.input).as_str() {
-            "mot" | "sto" | "csv" => self.from_motion(target)?,
+            "mot" | "sto" | "csv" => self.motion_as(target)?,
             "osim" | "xml" if target == Target::Glb => {
                 let model = warned(&self.input, open::model(&self.input)?);
                 MotionFormat::Glb.encode(&model, &Motion::default(), &self.name(), None)?
             }
-            "trc" if matches!(target, Target::Trc | Target::Csv) => self.from_recording(target)?,
+            "trc" if matches!(target, Target::Trc | Target::Csv) => self.recording_as(target)?,
             "trc" => {
                 return Err(self.unknown(
                     target,
@@ -116,7 +116,7 @@ impl Convert {
         self.input.file_stem().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    fn from_motion(&self, target: Target) -> Result<Vec<u8>, Failure> {
+    fn motion_as(&self, target: Target) -> Result<Vec<u8>, Failure> {
         let Some(model_path) = &self.model else {
             if matches!(target, Target::Glb | Target::Trc) {
                 let what = format!("{}: without --model", self.input.display());
@@ -139,7 +139,7 @@ impl Convert {
         }
     }
 
-    fn from_recording(&self, target: Target) -> Result<Vec<u8>, Failure> {
+    fn recording_as(&self, target: Target) -> Result<Vec<u8>, Failure> {
         let recording = warned(&self.input, open::recording(&self.input)?);
         if target == Target::Csv {
             return encoded(csv::write(&marker_table(&recording)));

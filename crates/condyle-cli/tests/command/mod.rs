@@ -54,12 +54,3 @@ pub(crate) struct Answer {
     pub(crate) out: Vec<u8>,
     pub(crate) err: String,
 }
-
-impl Answer {
-    /// Standard output of a run that must have ended with this code.
-    #[track_caller]
-    pub(crate) fn expect(self, code: i32) -> String {
-        assert_eq!(self.code, code, "{}", self.err);
-        String::from_utf8(self.out).expect("text on standard output")
-    }
-}

@@ -102,9 +102,7 @@ fn loops_are_listed() {
 fn a_recording_and_its_gaps() {
     let folder = Folder::new("info-recording");
     // MID is missing in frames 3, 4 and 8, ANKLE in frame 0.
-    let trc = leg::trc(11, |frame, marker| {
-        !(marker == 1 && matches!(frame, 3 | 4 | 8)) && !(marker == 5 && frame == 0)
-    });
+    let trc = leg::trc(11, |frame, marker| !matches!((marker, frame), (1, 3 | 4 | 8) | (5, 0)));
     folder.write("a.trc", trc);
     let info = folder.condyle(&["info", "a.trc", "--json"]).json();
     assert_eq!((&info["kind"], &info["unit"]), (&json!("recording"), &json!("mm")));

@@ -14,6 +14,13 @@ use command::{Answer, Folder};
 use serde_json::Value;
 
 impl Answer {
+    /// Standard output of a run that must have ended with this code.
+    #[track_caller]
+    fn expect(self, code: i32) -> String {
+        assert_eq!(self.code, code, "{}", self.err);
+        String::from_utf8(self.out).expect("text on standard output")
+    }
+
     /// The one JSON document that standard output must be.
     #[track_caller]
     fn json(self) -> Value {

@@ -118,6 +118,7 @@ pub fn read(text: &str) -> Result<Read<Table>, Error> {
                 "sto/row-count",
                 format!("the header says {declared} rows, {} follow", times.len()),
             )
+            .at(names_line.place())
             .with_help("the rows are right"),
         );
     }

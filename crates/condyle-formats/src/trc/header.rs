@@ -34,6 +34,8 @@ pub(super) struct Header {
     pub(super) frames: Option<f64>,
     /// None where it must be guessed.
     pub(super) unit: Option<LengthUnit>,
+    /// The line of the header's values.
+    pub(super) values: Place,
 }
 
 /// Reads up to and including the axis line; `lines` is left at the first row.
@@ -66,8 +68,8 @@ pub(super) fn read<'a>(
         );
     }
     let unit = unit_of(value_of("Units"), values_line, warnings);
-    let labels = labels(lines, number_of("NumMarkers"), warnings)?;
-    Ok(Header { labels, rate, frames: number_of("NumFrames"), unit })
+    let labels = labels(lines, values_line, number_of("NumMarkers"), warnings)?;
+    Ok(Header { labels, rate, frames: number_of("NumFrames"), unit, values: values_line.place() })
 }
 
 /// Finds the line of keys, which is the second of a good file.
@@ -141,6 +143,7 @@ fn unit_of(name: Option<&str>, line: Line<'_>, warnings: &mut Warnings) -> Optio
 /// Reads the label line and the axis line after it.
 fn labels<'a>(
     lines: &mut std::iter::Peekable<impl Iterator<Item = Line<'a>>>,
+    values: Line<'a>,
     declared: Option<f64>,
     warnings: &mut Warnings,
 ) -> Result<Vec<String>, Error> {
@@ -149,6 +152,7 @@ fn labels<'a>(
     };
     let Some(label_line) = next(lines) else {
         return Err(Error::new("trc/truncated", "the file ends before the marker names")
+            .at(values.place())
             .with_help("a line `Frame# Time name name ...` must follow the header's values"));
     };
     let delimiter = Delimiter::of(label_line.text);

@@ -1,7 +1,7 @@
 //! Reading: rows, units and times.
 
 use super::header::{self, Delimiter, Header};
-use crate::diagnostic::{Diagnostic, Error, Read, Warnings};
+use crate::diagnostic::{Diagnostic, Error, Place, Read, Warnings};
 use crate::recording::{LengthUnit, Recording};
 use crate::text::{Line, check_size, decode, last_line, lines, number};
 
@@ -87,6 +87,7 @@ pub fn read_with(text: &str, options: Options) -> Result<Read<Recording>, Error>
                 "trc/frame-count",
                 format!("NumFrames says {declared}, {} rows follow", times.len()),
             )
+            .at(header.values)
             .with_help("the rows are right"),
         );
     }
@@ -95,7 +96,7 @@ pub fn read_with(text: &str, options: Options) -> Result<Read<Recording>, Error>
     let mut recording =
         Recording { labels, rate, times, positions: Vec::new(), units: LengthUnit::Metre };
     recording.positions = std::mem::take(&mut positions);
-    convert(&mut recording, header.unit, &mut warnings);
+    convert(&mut recording, header.unit, header.values, &mut warnings);
     Ok(Read { value: recording, warnings: warnings.finish() })
 }
 
@@ -285,7 +286,12 @@ fn rate(declared: Option<f64>, times: &[f64], warnings: &mut Warnings) -> f64 {
 }
 
 /// Turns positions into metres, by a guess where the file does not say what they are.
-fn convert(recording: &mut Recording, unit: Option<LengthUnit>, warnings: &mut Warnings) {
+fn convert(
+    recording: &mut Recording,
+    unit: Option<LengthUnit>,
+    header: Place,
+    warnings: &mut Warnings,
+) {
     let unit = unit.unwrap_or_else(|| {
         // A person's markers span 1 to 3 m, one arm's half a metre.
         let size = recording.extent().unwrap_or_else(|| recording.reach());
@@ -294,10 +300,8 @@ fn convert(recording: &mut Recording, unit: Option<LengthUnit>, warnings: &mut W
             size if size > 10.0 => LengthUnit::Centimetre,
             _ => LengthUnit::Metre,
         };
-        warnings.push(Diagnostic::new(
-            "trc/unit",
-            format!("the markers span {size:.4} units, taken as {}", unit.name()),
-        ));
+        let message = format!("the markers span {size:.4} units, taken as {}", unit.name());
+        warnings.push(Diagnostic::new("trc/unit", message).at(header));
         unit
     });
     for position in recording.positions.iter_mut().flatten() {
@@ -316,6 +320,7 @@ fn convert(recording: &mut Recording, unit: Option<LengthUnit>, warnings: &mut W
     if let Some(message) = suspicious {
         warnings.push(
             Diagnostic::new("trc/size", message)
+                .at(header)
                 .with_help(format!("is the unit `{}` right?", unit.name())),
         );
     }

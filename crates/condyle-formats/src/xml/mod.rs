@@ -228,6 +228,12 @@ fn explain(error: &roxmltree::Error, text: &str) -> Error {
         roxmltree::Error::NoRootNode => Error::new("xml/syntax", "there is no element")
             .at(Place::at_line(1))
             .with_help("this is not an XML file"),
+        // The parser gives the end of the text no place of its own.
+        roxmltree::Error::UnexpectedEndOfStream => {
+            Error::new("xml/syntax", "the text ends inside a tag")
+                .at(last_line(text))
+                .with_help("the file ends here; was it cut off?")
+        }
         _ => Error::new("xml/syntax", message)
             .at(place)
             .with_help("this is not well-formed XML; is the file damaged or cut off?"),

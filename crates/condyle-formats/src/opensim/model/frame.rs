@@ -7,6 +7,48 @@ use condyle_math::{Affine, EulerOrder, Mat3, Vec3};
 use condyle_model::ModelBuilder;
 use std::collections::HashMap;
 
+/// How many bodies, and how many coordinates, a model may have: an order of magnitude beyond any
+/// creature, and far below what would take minutes to pose.
+const MOST_BODIES: usize = 10_000;
+/// How many joints, frames, markers and constraints together.
+const MOST_PARTS: usize = 100_000;
+/// How many frames may be fixed in each other in a row.
+const LONGEST_CHAIN: usize = 256;
+
+/// Counts what a file holds, so that a damaged or hostile one is refused in time.
+#[derive(Default)]
+struct Parts {
+    bodies: usize,
+    coordinates: usize,
+    others: usize,
+}
+
+impl Parts {
+    fn count(&mut self, element: Element<'_>) -> Result<(), Error> {
+        let name = element.name();
+        let (count, most) = match name {
+            "Body" => (&mut self.bodies, MOST_BODIES),
+            "Coordinate" => (&mut self.coordinates, MOST_BODIES),
+            "PhysicalOffsetFrame"
+            | "OffsetFrame"
+            | "Station"
+            | "StationDefinedFrame"
+            | "Marker" => (&mut self.others, MOST_PARTS),
+            _ if name.ends_with("Joint") || name.ends_with("Constraint") => {
+                (&mut self.others, MOST_PARTS)
+            }
+            _ => return Ok(()),
+        };
+        *count += 1;
+        if *count > most {
+            return Err(element
+                .error("osim/size", format!("{} is one too many", element.describe()))
+                .with_help(format!("a model may have {most} of its kind; is the file damaged?")));
+        }
+        Ok(())
+    }
+}
+
 /// Every frame and station of a model file.
 pub(super) struct Frames<'d> {
     items: Vec<Item<'d>>,
@@ -73,7 +115,9 @@ impl<'d> Frames<'d> {
     pub(super) fn collect(model: Element<'d>, builder: &mut ModelBuilder) -> Result<Self, Error> {
         let mut frames = Self { items: vec![], by_path: HashMap::new(), by_name: HashMap::new() };
         let mut has_ground = false;
+        let mut parts = Parts::default();
         for element in model.descendants() {
+            parts.count(element)?;
             let name = element.attribute("name").unwrap_or_default();
             let kind = match element.name() {
                 "Ground" => Kind::Base(None),
@@ -155,7 +199,7 @@ impl<'d> Frames<'d> {
     ) -> Result<(Base, Affine), Error> {
         let mut index = self.look_up(owner, reference)?;
         let mut transform = Affine::IDENTITY;
-        for _ in 0..=self.items.len() {
+        for _ in 0..=self.items.len().min(LONGEST_CHAIN) {
             let item = &self.items[index];
             let element = item.element;
             let local = match item.kind {
@@ -182,8 +226,11 @@ impl<'d> Frames<'d> {
             index = self.look_up(element, parent)?;
         }
         Err(reference
-            .error("osim/frame-cycle", format!("frame `{}` is its own ancestor", reference.text()))
-            .with_help("let one of the frames on the way be fixed in a body"))
+            .error(
+                "osim/frame-cycle",
+                format!("frame `{}` never leads to a body", reference.text()),
+            )
+            .with_help("is it its own ancestor? let a frame on the way be fixed in a body"))
     }
 
     fn look_up(&self, owner: Element<'d>, reference: Element<'d>) -> Result<usize, Error> {

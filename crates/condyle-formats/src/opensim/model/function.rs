@@ -26,6 +26,11 @@ pub(super) fn inside(owner: Element<'_>) -> Result<Option<AnyFunction>, Error> {
     }
 }
 
+/// Whether the function inside an element is a multiple of another, if only of 1.
+pub(super) fn is_multiplied(owner: Element<'_>) -> bool {
+    owner.child("function").unwrap_or(owner).child("MultiplierFunction").is_some()
+}
+
 fn is_function(element: Element<'_>) -> bool {
     let name = element.name();
     name.ends_with("Function")

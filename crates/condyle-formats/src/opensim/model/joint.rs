@@ -293,7 +293,10 @@ fn custom(
             inputs.push(coordinates.named(element, at, name)?);
         }
         let function = function::inside(axis_element)?;
-        if function.is_none() && !inputs.is_empty() {
+        // OpenSim takes an empty <function/> as the coordinate itself, and none at all as 0.
+        let absent =
+            axis_element.child("function").is_none() && element.child("SpatialTransform").is_some();
+        if function.is_none() && absent && !inputs.is_empty() {
             reader.warn(
                 "osim/no-function",
                 axis_element,
@@ -302,7 +305,16 @@ fn custom(
             );
             continue;
         }
-        note_kind(&mut kinds, coordinates, &inputs, function.as_ref(), rotation);
+        let plain = match &function {
+            None => true,
+            Some(AnyFunction::One(Function { curve: Curve::Linear { slope, .. }, .. })) => {
+                slope.abs() == 1.0 && !function::is_multiplied(axis_element)
+            }
+            Some(_) => false,
+        };
+        if plain {
+            note_kind(&mut kinds, coordinates, &inputs, rotation);
+        }
         let name = axis_element.attribute("name").filter(|n| !n.is_empty());
         let name = name.map_or_else(|| format!("axis_{}", place + 1), str::to_owned);
         let Some(amount) = amount(reader, set, axis_element, &name, &inputs, function)? else {
@@ -339,25 +351,16 @@ fn axes(joint: Element<'_>) -> Vec<(usize, Element<'_>)> {
 }
 
 /// OpenSim calls a coordinate rotational (translational) if some axis takes it as it is, up to
-/// sign, as its angle (distance), the last such axis deciding; all others are coupled, and files
-/// hold them without degrees.
+/// sign, as its angle (distance), the last such axis deciding; all others are coupled, also those in
+/// a multiplier of 1, and files hold them without degrees.
 fn note_kind(
     kinds: &mut [CoordinateKind],
     coordinates: &Coordinates<'_>,
     inputs: &[CoordinateId],
-    function: Option<&AnyFunction>,
     rotation: bool,
 ) {
-    let plain = match function {
-        Some(AnyFunction::One(Function { factor, curve: Curve::Linear { slope, .. } })) => {
-            *factor == 1.0 && slope.abs() == 1.0
-        }
-        _ => false,
-    };
     let [id] = inputs else { return };
-    if let Some(index) = coordinates.ids.iter().position(|(_, known)| known == id)
-        && plain
-    {
+    if let Some(index) = coordinates.ids.iter().position(|(_, known)| known == id) {
         kinds[index] =
             if rotation { CoordinateKind::Rotation } else { CoordinateKind::Translation };
     }
@@ -386,7 +389,9 @@ fn amount(
             .with_help("list as many coordinates as the function has arguments")
     };
     match (&sources[..], function) {
-        (_, None) => Ok(None),
+        ([], None) => Ok(None),
+        ([one], None) => Ok(Some(*one)),
+        (_, None) => Err(mismatch(1)),
         ([one], Some(AnyFunction::One(function))) => {
             Ok(Some(reader.builder.map(set, name, *one, function)))
         }

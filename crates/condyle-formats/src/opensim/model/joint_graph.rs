@@ -14,7 +14,7 @@ use crate::xml::Element;
 use condyle_math::{Affine, EulerOrder, Vec3};
 use condyle_model::SegmentId;
 use condyle_model::model::{Closure, Condition};
-use std::collections::{BTreeSet, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// A joint with its place in the tree.
 pub(super) struct PlacedJoint<'d> {
@@ -97,7 +97,7 @@ pub(super) fn collect<'d>(reader: &mut Reader<'d, '_>) -> Result<Vec<PlacedJoint
         placed[base] = true;
         level.push(base);
     }
-    name_apart(&mut stated);
+    name_apart(reader, &mut stated);
     let mut joints = vec![];
     for (joint, how) in stated.into_iter().zip(how) {
         joints.push(place(reader, joint, how)?);
@@ -148,19 +148,32 @@ fn stated_joints<'d>(reader: &mut Reader<'d, '_>) -> Result<Vec<Stated<'d>>, Err
 }
 
 /// Gives unnamed and twice-named joints names of their own: `hip`, `hip_0`, `hip_1`.
-fn name_apart(stated: &mut [Stated<'_>]) {
+fn name_apart(reader: &mut Reader<'_, '_>, stated: &mut [Stated<'_>]) {
     let mut taken: HashSet<String> = stated.iter().map(|joint| joint.name.clone()).collect();
-    let mut seen = HashSet::new();
+    // For every name met, the first number not tried yet: each is tried once, however many twins.
+    let mut next: HashMap<String, usize> = HashMap::new();
     for joint in stated {
-        if joint.name.is_empty() {
+        let unnamed = joint.name.is_empty();
+        if unnamed {
             joint.name = "joint".to_owned();
         }
-        if !seen.insert(joint.name.clone()) {
-            let fresh = (0..).map(|n| format!("{}_{n}", joint.name)).find(|n| !taken.contains(n));
-            joint.name = fresh.unwrap_or_default();
-            taken.insert(joint.name.clone());
-            seen.insert(joint.name.clone());
+        let Some(number) = next.get_mut(&joint.name) else {
+            next.insert(joint.name.clone(), 0);
+            continue;
+        };
+        let fresh = loop {
+            let fresh = format!("{}_{number}", joint.name);
+            *number += 1;
+            if taken.insert(fresh.clone()) {
+                break fresh;
+            }
+        };
+        if !unnamed {
+            let message = format!("a second joint is named `{}`", joint.name);
+            let help = format!("it is read as `{fresh}`");
+            reader.warn("osim/duplicate-joint", joint.element, message, &help);
         }
+        joint.name = fresh;
     }
 }
 

@@ -29,7 +29,7 @@ mod joint_graph;
 use crate::diagnostic::{Diagnostic, Error, Read, Warnings};
 use crate::xml::{Element, XmlDocument};
 use condyle_math::Vec3;
-use condyle_model::{Model, ModelBuilder, SegmentId, Severity};
+use condyle_model::{CoordinateKind, Model, ModelBuilder, SegmentId, Severity};
 use frame::Frames;
 
 /// Reads a model from the bytes of an `.osim` file.
@@ -91,6 +91,16 @@ impl<'d, 'w> Reader<'d, 'w> {
         let line = self.element.place();
         match self.builder.build_with_findings() {
             Ok((model, findings)) => {
+                warn_of_degrees(&model, self.element, self.warnings);
+                let directions = directions(&model);
+                if directions > MOST_DIRECTIONS {
+                    return Err(Error::new(
+                        "osim/size",
+                        format!("the coordinates move segments in {directions} ways"),
+                    )
+                    .with_help(format!("at most {MOST_DIRECTIONS} are computed; use fewer bodies"))
+                    .at(line));
+                }
                 for finding in findings {
                     if finding.severity == Severity::Warning && finding.code != "model/axis-length"
                     {
@@ -154,12 +164,60 @@ impl<'d, 'w> Reader<'d, 'w> {
                 );
                 continue;
             }
-            let point = element.child_numbers::<3>("location")?.unwrap_or_default();
+            let point = triple(element, "location")?;
             let (base, frame) = self.frames.of_part(element, "parent_frame", "body")?;
-            self.builder.marker(&name, base, frame * Vec3::from(point));
+            self.builder.marker(&name, base, frame * point);
         }
         Ok(())
     }
+}
+
+/// Angles in a model are radians: a range of several turns that is at most 360 was meant in degrees.
+fn warn_of_degrees(model: &Model, element: Element<'_>, warnings: &mut Warnings) {
+    let turns = 4.0 * std::f64::consts::PI..=360.0;
+    for coordinate in model.coordinates() {
+        let range = coordinate.range;
+        let most =
+            [range.lower, range.upper].into_iter().flatten().map(f64::abs).fold(0.0, f64::max);
+        if coordinate.kind != CoordinateKind::Rotation || !turns.contains(&most) {
+            continue;
+        }
+        let stated = element.descendants().filter(|e| e.is("Coordinate"));
+        let here = stated.into_iter().find(|e| e.attribute("name") == Some(&coordinate.name));
+        let message = format!("the range of `{}` reaches {most} radians", coordinate.name);
+        let place = here.unwrap_or(element).place();
+        warnings.push(
+            Diagnostic::new("osim/degrees", message)
+                .at(place)
+                .with_help("is it in degrees? the file's angles must be in radians"),
+        );
+    }
+}
+
+/// How many pairs of a segment and a direction that moves it a model may have.
+const MOST_DIRECTIONS: usize = 4_000_000;
+
+/// Directions that move a segment, counted over all segments: what a Jacobian holds.
+fn directions(model: &Model) -> usize {
+    let mut own = vec![0usize; model.joint_sets().len()];
+    for coordinate in model.coordinates() {
+        own[coordinate.joint_set.index()] += coordinate.kind.tangent();
+    }
+    let mut below: Vec<Option<usize>> = vec![None; model.segments().len()];
+    let mut path = vec![];
+    for start in model.segment_ids() {
+        let mut here = Some(start);
+        while let Some(id) = here.filter(|id| below[id.index()].is_none()) {
+            path.push(id);
+            here = model.segment(id).parent;
+        }
+        let mut sum = here.and_then(|id| below[id.index()]).unwrap_or(0);
+        while let Some(id) = path.pop() {
+            sum += model.segment(id).joint_set.map_or(0, |set| own[set.index()]);
+            below[id.index()] = Some(sum);
+        }
+    }
+    below.into_iter().flatten().sum()
 }
 
 /// The world or one of the model's segments.
