@@ -85,6 +85,37 @@ impl SimmSpline {
         (y + t * (b + t * (c + t * d)), b + t * (2.0 * c + t * 3.0 * d))
     }
 
+    /// Value and first three derivatives at `at`; at a knot those of the piece that begins there.
+    ///
+    /// ```
+    /// use condyle_math::function::SimmSpline;
+    /// // Through four points of x³ it is x³: 8, 12, 12, 6 at 2.
+    /// let cube = SimmSpline::new(vec![0.0, 1.0, 2.5, 3.0], vec![0.0, 1.0, 15.625, 27.0]).unwrap();
+    /// let exact = [8.0, 12.0, 12.0, 6.0];
+    /// assert!(cube.derivatives(2.0).iter().zip(exact).all(|(a, b)| (a - b).abs() < 1e-12));
+    /// ```
+    pub fn derivatives(&self, at: f64) -> [f64; 4] {
+        let last = self.x.len() - 1;
+        if at >= self.x[last] || at < self.x[0] || last == 0 {
+            let (value, slope) = self.value_and_slope(at);
+            return [value, slope, 0.0, 0.0];
+        }
+        let i = interval(&self.x, at);
+        let [y, b, c, d] = self.cubic[i];
+        let t = at - self.x[i];
+        [
+            y + t * (b + t * (c + t * d)),
+            b + t * (2.0 * c + t * 3.0 * d),
+            2.0 * c + 6.0 * d * t,
+            6.0 * d,
+        ]
+    }
+
+    /// The arguments of the knots.
+    pub fn knots(&self) -> &[f64] {
+        &self.x
+    }
+
     /// First and last argument.
     pub fn domain(&self) -> (f64, f64) {
         (self.x[0], self.x[self.x.len() - 1])

@@ -10,6 +10,7 @@
 //! | [`Map`] | scalar → scalars, one function each |
 //! | [`Combine`] | scalars → scalar |
 //! | [`Rotate`] | angle → rotation about a fixed axis |
+//! | [`Pivot`] | angle → rotation about an axis whose centre moves |
 //! | [`Translate`] | distance → translation along a fixed axis |
 //! | [`Ball`] | orientation → rotation |
 //! | [`Place`] | nothing → a fixed transform |
@@ -26,6 +27,7 @@ mod combine;
 mod constant_curvature;
 mod ellipsoid;
 mod map;
+mod pivot;
 mod place;
 mod product;
 mod rotate;
@@ -36,6 +38,7 @@ pub use combine::Combine;
 pub use constant_curvature::ConstantCurvature;
 pub use ellipsoid::Ellipsoid;
 pub use map::Map;
+pub use pivot::{Centre, Pivot, PivotError};
 pub use place::Place;
 pub use product::Product;
 pub use rotate::Rotate;
@@ -79,6 +82,8 @@ pub enum Component {
     Combine(Combine),
     /// Rotation about a fixed axis.
     Rotate(Rotate),
+    /// Rotation about an axis whose centre moves.
+    Pivot(Pivot),
     /// Translation along a fixed axis.
     Translate(Translate),
     /// Rotation by an orientation.
@@ -100,6 +105,7 @@ impl Component {
             Self::Map(_) => "map",
             Self::Combine(_) => "combine",
             Self::Rotate(_) => "rotate",
+            Self::Pivot(_) => "pivot",
             Self::Translate(_) => "translate",
             Self::Ball(_) => "ball",
             Self::Place(_) => "place",
@@ -119,6 +125,7 @@ impl Component {
             Self::Map(c) => vec![("input", Scalar, c.input)],
             Self::Combine(c) => c.inputs.iter().map(|&s| ("inputs", Scalar, s)).collect(),
             Self::Rotate(c) => vec![("angle", Scalar, c.angle)],
+            Self::Pivot(c) => vec![("angle", Scalar, c.angle)],
             Self::Translate(c) => vec![("distance", Scalar, c.distance)],
             Self::Ball(c) => vec![("orientation", Orientation, c.orientation)],
             Self::Place(_) => vec![],

@@ -283,6 +283,9 @@ impl Compiler<'_> {
                     let register = self.register(register);
                     steps.push(Step::Ball(register));
                 }
+                Component::Pivot(law) => {
+                    self.law(AnyLaw::Pivot(law.clone()), &[law.angle], steps);
+                }
                 Component::Ellipsoid(law) => {
                     self.law(AnyLaw::Ellipsoid(law.clone()), &law.angles, steps);
                 }

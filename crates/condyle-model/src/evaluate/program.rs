@@ -3,7 +3,7 @@
 use super::chain::{Silent, run_chain};
 use super::derivative_plan::DerivativePlan;
 use super::pose::Pose;
-use crate::component::{ConstantCurvature, Ellipsoid, Law, MOST_COMBINED};
+use crate::component::{ConstantCurvature, Ellipsoid, Law, MOST_COMBINED, Pivot};
 use crate::model::{CoordinateId, Model, SegmentId};
 use condyle_math::function::{Function, FunctionOfSeveral};
 use condyle_math::{Affine, Quat, Scalar, Vec3};
@@ -56,6 +56,7 @@ pub(super) struct LawCall {
 /// The laws that components bring.
 #[derive(Clone, Debug)]
 pub(super) enum AnyLaw {
+    Pivot(Pivot),
     Ellipsoid(Ellipsoid),
     ConstantCurvature(ConstantCurvature),
 }
@@ -64,6 +65,7 @@ impl Law for AnyLaw {
     #[inline]
     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
         match self {
+            Self::Pivot(law) => law.transform(inputs),
             Self::Ellipsoid(law) => law.transform(inputs),
             Self::ConstantCurvature(law) => law.transform(inputs),
         }

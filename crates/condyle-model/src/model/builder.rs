@@ -6,8 +6,8 @@ use super::{
     Model, NamedComponent, Segment, SegmentId, UpAxis,
 };
 use crate::component::{
-    Ball, Combine, Component, ConstantCurvature, Ellipsoid, Map, Place, Product, Rotate, Source,
-    Translate,
+    Ball, Combine, Component, ConstantCurvature, Ellipsoid, Map, Pivot, Place, Product, Rotate,
+    Source, Translate,
 };
 use crate::limit::Range;
 use condyle_math::function::{Function, FunctionOfSeveral};
@@ -175,6 +175,11 @@ impl ModelBuilder {
         axis: Vec3,
     ) -> Source {
         self.component(set, name, Component::Rotate(Rotate { angle: angle.into(), axis }))
+    }
+
+    /// A rotation about an axis whose centre moves.
+    pub fn pivot(&mut self, set: JointSetId, name: &str, pivot: Pivot) -> Source {
+        self.component(set, name, Component::Pivot(pivot))
     }
 
     /// A translation along a fixed axis.

@@ -4,7 +4,7 @@ use condyle_math::function::{
     Curve, Function, FunctionOfSeveral, MultivariatePolynomial, Polynomial, SimmSpline,
 };
 use condyle_math::{Affine, Quat, Vec3};
-use condyle_model::component::ConstantCurvature;
+use condyle_model::component::{Centre, ConstantCurvature, Pivot};
 use condyle_model::{CoordinateKind, JointSetId, Model, ModelBuilder, Range, SegmentId, Source};
 
 /// SplitMix64 (Steele, Lea & Flood 2014): reproducible everywhere, no dependency.
@@ -154,7 +154,7 @@ fn grow_component(
 ) {
     let name = format!("component_{number}");
     let any = |dice: &mut Dice| scalars[dice.below(scalars.len())];
-    match dice.below(9) {
+    match dice.below(10) {
         0 => {
             let (input, function) = (any(dice), dice.function());
             scalars.push(b.map(set, &name, input, function));
@@ -184,10 +184,22 @@ fn grow_component(
             let angles = [any(dice), any(dice), any(dice)];
             transforms.push(b.ellipsoid(set, &name, angles, Vec3::new(0.07, 0.15, 0.09)));
         }
+        8 => {
+            let (angle, axis) = (any(dice), dice.axis());
+            let centre = if dice.below(2) == 0 {
+                Centre::Intervals([-0.45, 0.35, 0.8].map(|to| (to, dice.vector(0.1))).to_vec())
+            } else {
+                let x = vec![-0.9, -0.1, 0.6, 1.0];
+                Centre::Path(Box::new([0; 3].map(|_| {
+                    let y = x.iter().map(|_| dice.within(0.1)).collect();
+                    SimmSpline::new(x.clone(), y).unwrap()
+                })))
+            };
+            transforms.push(b.pivot(set, &name, Pivot::new(angle, axis, centre).unwrap()));
+        }
         7 => {
             let column = ConstantCurvature {
                 angles: [any(dice), any(dice), any(dice)],
-                // Away from the declared jump of the arc at a right angle.
                 neutral: [0.2, -0.1, 0.05],
                 length: 0.2,
             };

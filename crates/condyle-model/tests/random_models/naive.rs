@@ -1,7 +1,7 @@
 //! The slow and obvious twin of a program: every value is computed afresh by walking the model.
 
 use condyle_math::{Affine, Mat3, Quat, Vec3};
-use condyle_model::component::{Component, Law};
+use condyle_model::component::{Centre, Component, Law};
 use condyle_model::{CoordinateId, Mode, Model, SegmentId, Source};
 
 pub(crate) struct Evaluator<'a> {
@@ -52,6 +52,37 @@ impl<'a> Evaluator<'a> {
                 Affine::from_rotation(Quat::from_axis_angle(c.axis, angle).to_mat3())
             }
             Component::Translate(c) => Affine::from_translation(c.axis * self.scalar(c.distance)),
+            Component::Pivot(c) => match c.centre() {
+                // Interval by interval, the one that holds 0 first.
+                Centre::Intervals(list) => {
+                    let angle = self.scalar(c.angle);
+                    let mut motion = Affine::IDENTITY;
+                    let (mut from, mut begin) = (0, f64::NEG_INFINITY);
+                    let mut pieces = vec![];
+                    while from < list.len() {
+                        let last = from + 1 == list.len();
+                        let end = if last { f64::INFINITY } else { list[from].0 };
+                        let (lo, hi) = (begin.max(angle.min(0.0)), end.min(angle.max(0.0)));
+                        if hi > lo {
+                            pieces.push((hi - lo, list[from].1));
+                        }
+                        begin = end;
+                        from += 1;
+                    }
+                    if angle < 0.0 {
+                        pieces.reverse();
+                    }
+                    for (amount, centre) in pieces {
+                        let turn = Quat::from_axis_angle(c.axis(), amount * angle.signum());
+                        motion = Affine::from_translation(centre)
+                            * Affine::from_rotation(turn.to_mat3())
+                            * Affine::from_translation(-centre)
+                            * motion;
+                    }
+                    motion
+                }
+                Centre::Path(_) => c.transform(&[self.scalar(c.angle)]),
+            },
             Component::Ball(c) => {
                 let Source::Coordinate(id) = c.orientation else {
                     panic!("a ball takes a coordinate")
