@@ -103,9 +103,8 @@ impl Problem for FrameProblem<'_, '_> {
                 objective += weight * self.closures.residuals.iter().map(|c| c * c).sum::<f64>();
             }
         }
-        for (value, limit) in inequalities.iter_mut().zip(&tracker.follower_limits) {
-            let q = self.pose.coordinate(tracker.model, limit.coordinate)[0];
-            *value = limit.sign * (q - limit.bound);
+        for (row, value) in inequalities.iter_mut().enumerate() {
+            *value = self.pose.limit_row(row);
         }
         objective
     }
@@ -159,13 +158,12 @@ impl Problem for FrameProblem<'_, '_> {
             };
         }
         self.add_closures(local);
-        for (row, limit) in tracker.follower_limits.iter().enumerate() {
+        for row in 0..tracker.limit_rows {
             let line = &mut local.inequality_rows[row * n..(row + 1) * n];
             line.fill(0.0);
-            let entries = tracker.program.coordinate_directions(tracker.model, limit.coordinate);
-            for &(direction, slot) in entries {
+            for &(direction, slot) in tracker.program.limit_row_directions(row) {
                 if let Some(entry) = line.get_mut(tracker.unknowns[direction as usize] as usize) {
-                    *entry += limit.sign * self.jacobian.derivative(slot);
+                    *entry += self.jacobian.derivative(slot);
                 }
             }
         }

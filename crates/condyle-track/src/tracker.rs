@@ -26,14 +26,6 @@ pub(crate) struct Group {
     pub entries: Vec<(u32, u32)>,
 }
 
-/// A side of the range of a coordinate that follows others: sign·(q - bound) ≥ 0.
-#[derive(Clone, Debug)]
-pub(crate) struct FollowerLimit {
-    pub coordinate: CoordinateId,
-    pub bound: f64,
-    pub sign: f64,
-}
-
 /// One model and what is asked of it; constant, and shared by all threads.
 #[derive(Clone, Debug)]
 pub struct Tracker<'m> {
@@ -50,7 +42,8 @@ pub struct Tracker<'m> {
     /// For each unknown of a coordinate of one number: where that is stored, and its bounds.
     pub(crate) stored: Vec<Option<(usize, f64, f64)>>,
     pub(crate) defaults: Vec<f64>,
-    pub(crate) follower_limits: Vec<FollowerLimit>,
+    /// How many limit rows of the program hold; none without limits.
+    pub(crate) limit_rows: usize,
     pub(crate) closures_exact: bool,
     /// Coordinates that turn or orient everything: what to vary for a first guess.
     pub(crate) root_rotations: Vec<CoordinateId>,
@@ -72,6 +65,7 @@ impl<'m> Tracker<'m> {
             positive(t.weight) && model.coordinate(t.coordinate).kind != CoordinateKind::Orientation
         });
         let program = Program::compile(model);
+        let limit_rows = if options.limits { program.limit_row_len() } else { 0 };
         let defaults = model.defaults();
         let mut unknowns = vec![FIXED; model.tangent_len()];
         let (mut directions, mut stored) = (vec![], vec![]);
@@ -101,7 +95,7 @@ impl<'m> Tracker<'m> {
             directions,
             stored,
             defaults,
-            follower_limits: follower_limits(model, options),
+            limit_rows,
             closures_exact: tasks.closure_weight.is_none_or(|w| w.is_infinite()),
             root_rotations: vec![],
             tasks,
@@ -175,23 +169,6 @@ impl<'m> Tracker<'m> {
     }
 }
 
-fn follower_limits(model: &Model, options: Options) -> Vec<FollowerLimit> {
-    let mut limits = vec![];
-    for id in model.coordinate_ids() {
-        let coordinate = model.coordinate(id);
-        if !options.limits || coordinate.follows.is_none() {
-            continue;
-        }
-        let (lower, upper) = coordinate.range.bounds();
-        for (bound, sign) in [(lower, 1.0), (upper, -1.0)] {
-            if bound.is_finite() {
-                limits.push(FollowerLimit { coordinate: id, bound, sign });
-            }
-        }
-    }
-    limits
-}
-
 /// The buffers of one thread.
 #[derive(Debug)]
 pub struct Scratch {
@@ -239,7 +216,7 @@ impl Scratch {
         Self {
             pose: Pose::new(program),
             jacobian: Jacobian::new(program),
-            solver: Solver::new(&scale, equalities, tracker.follower_limits.len()),
+            solver: Solver::new(&scale, equalities, tracker.limit_rows),
             closures,
             buffers: Buffers {
                 current: vec![0.0; stored],

@@ -9,6 +9,7 @@
 //! | --- | --- |
 //! | [`Map`] | scalar → scalars, one function each |
 //! | [`Combine`] | scalars → scalar |
+//! | [`Depend`] | driver, passive → passive, held between bounds that the driver sets |
 //! | [`Rotate`] | angle → rotation about a fixed axis |
 //! | [`Pivot`] | angle → rotation about an axis whose centre moves |
 //! | [`Translate`] | distance → translation along a fixed axis |
@@ -25,6 +26,7 @@
 mod ball;
 mod combine;
 mod constant_curvature;
+mod depend;
 mod ellipsoid;
 mod map;
 mod pivot;
@@ -36,6 +38,7 @@ mod translate;
 pub use ball::Ball;
 pub use combine::Combine;
 pub use constant_curvature::ConstantCurvature;
+pub use depend::Depend;
 pub use ellipsoid::Ellipsoid;
 pub use map::Map;
 pub use pivot::{Centre, Pivot, PivotError};
@@ -80,6 +83,8 @@ pub enum Component {
     Map(Map),
     /// Scalars to scalar.
     Combine(Combine),
+    /// A scalar held between bounds that another sets.
+    Depend(Depend),
     /// Rotation about a fixed axis.
     Rotate(Rotate),
     /// Rotation about an axis whose centre moves.
@@ -104,6 +109,7 @@ impl Component {
         match self {
             Self::Map(_) => "map",
             Self::Combine(_) => "combine",
+            Self::Depend(_) => "depend",
             Self::Rotate(_) => "rotate",
             Self::Pivot(_) => "pivot",
             Self::Translate(_) => "translate",
@@ -124,6 +130,7 @@ impl Component {
         match self {
             Self::Map(c) => vec![("input", Scalar, c.input)],
             Self::Combine(c) => c.inputs.iter().map(|&s| ("inputs", Scalar, s)).collect(),
+            Self::Depend(c) => vec![("passive", Scalar, c.passive), ("driver", Scalar, c.driver)],
             Self::Rotate(c) => vec![("angle", Scalar, c.angle)],
             Self::Pivot(c) => vec![("angle", Scalar, c.angle)],
             Self::Translate(c) => vec![("distance", Scalar, c.distance)],
@@ -139,7 +146,7 @@ impl Component {
     pub fn outputs(&self) -> (PortType, usize) {
         match self {
             Self::Map(c) => (PortType::Scalar, c.functions.len()),
-            Self::Combine(_) => (PortType::Scalar, 1),
+            Self::Combine(_) | Self::Depend(_) => (PortType::Scalar, 1),
             _ => (PortType::Transform, 1),
         }
     }

@@ -88,7 +88,8 @@ impl Pivot {
         }
         let ends: Vec<f64> = match &centre {
             Centre::Path(splines) => {
-                let mut knots: Vec<f64> = splines.iter().flat_map(|s| s.knots()).copied().collect();
+                let mut knots: Vec<f64> =
+                    splines.iter().flat_map(|s| s.knots().map(|(x, _)| x)).collect();
                 knots.sort_by(f64::total_cmp);
                 knots.dedup();
                 knots

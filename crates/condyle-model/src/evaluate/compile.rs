@@ -1,8 +1,8 @@
 //! From a checked model to its program.
 
 use super::derivative_plan::{DerivativePlan, plan};
-use super::program::{AnyLaw, CombineCall, Instruction, LawCall, NO_BASE, Program, Step};
-use crate::component::{Component, Source};
+use super::program::{AnyLaw, CombineCall, Instruction, LawCall, NO_BASE, NO_BOUND, Program, Step};
+use crate::component::{Component, Depend, Source};
 use crate::model::{ComponentId, CoordinateKind, Model, Node, SegmentId, dependency_order};
 use condyle_math::function::FunctionOfSeveral;
 use condyle_math::{Affine, Mat3, Vec3};
@@ -48,6 +48,7 @@ pub(super) fn compile(model: &Model) -> Program {
             combines: vec![],
             laws: vec![],
             limits: vec![],
+            rows: vec![],
             plan: DerivativePlan::default(),
         },
         coordinates: model
@@ -64,6 +65,7 @@ pub(super) fn compile(model: &Model) -> Program {
     for node in order {
         compiler.node(node);
     }
+    compiler.follower_rows();
     for segment in segment_order(model) {
         compiler.segment(segment);
     }
@@ -218,6 +220,10 @@ impl Compiler<'_> {
                 let result = self.combine(&combine.function, &inputs);
                 self.outputs[id.index()].push(result);
             }
+            Component::Depend(depend) => {
+                let result = self.depend(depend);
+                self.outputs[id.index()].push(result);
+            }
             _ => {
                 if self.readers[id.index()] > 1 {
                     let register = self.program.transforms as u32;
@@ -226,6 +232,53 @@ impl Compiler<'_> {
                     self.append(id, &mut steps);
                     self.chain(NO_BASE, steps, register);
                     self.shared[id.index()] = Some(register);
+                }
+            }
+        }
+    }
+
+    /// A passive scalar between bounds that a driver sets: the held value, and a row for each side.
+    fn depend(&mut self, depend: &Depend) -> Scalar {
+        let passive = self.scalar(depend.passive);
+        let passive = self.register(passive);
+        let driver = self.scalar(depend.driver);
+        let driver = self.register(driver);
+        let mut bounds = [NO_BOUND; 2];
+        let sides = [(&depend.lower, 1.0), (&depend.upper, -1.0)];
+        for (bound, (function, sign)) in bounds.iter_mut().zip(sides) {
+            let Some(function) = function else { continue };
+            *bound = self.new_scalar();
+            self.function(function.clone(), driver, *bound);
+            self.row(passive, *bound, sign);
+        }
+        let output = self.new_scalar();
+        let [lower, upper] = bounds;
+        self.program.instructions.push(Instruction::Hold { passive, lower, upper, output });
+        Scalar::Register(output)
+    }
+
+    /// The row `sign · (value - bound) ≥ 0`.
+    fn row(&mut self, value: u32, bound: u32, sign: f64) {
+        let function = FunctionOfSeveral::Linear { slopes: vec![sign, -sign], intercept: 0.0 };
+        let inputs = [value, bound].map(Scalar::Register);
+        let row = self.combine(&function, &inputs);
+        let row = self.register(row);
+        self.program.rows.push(row);
+    }
+
+    /// Rows for the ranges of coordinates that follow others.
+    fn follower_rows(&mut self) {
+        for id in self.model.coordinate_ids() {
+            let coordinate = self.model.coordinate(id);
+            if coordinate.follows.is_none() {
+                continue;
+            }
+            let (lower, upper) = coordinate.range.bounds();
+            let value = self.model.stored_range(id).start as u32;
+            for (bound, sign) in [(lower, 1.0), (upper, -1.0)] {
+                if bound.is_finite() {
+                    let bound = self.register(Scalar::Constant(bound));
+                    self.row(value, bound, sign);
                 }
             }
         }
@@ -292,7 +345,7 @@ impl Compiler<'_> {
                 Component::ConstantCurvature(law) => {
                     self.law(AnyLaw::ConstantCurvature(law.clone()), &law.angles, steps);
                 }
-                Component::Map(_) | Component::Combine(_) => {}
+                Component::Map(_) | Component::Combine(_) | Component::Depend(_) => {}
             }
         }
     }

@@ -49,6 +49,8 @@ pub(super) struct DerivativePlan {
     entry_offsets: Vec<u32>,
     /// For each stored number its (direction, derivative slot) pairs.
     coordinate_entries: Vec<Vec<(u32, u32)>>,
+    /// For each limit row its (direction, derivative slot) pairs.
+    row_entries: Vec<Vec<(u32, u32)>>,
 }
 
 impl DerivativePlan {
@@ -57,6 +59,11 @@ impl DerivativePlan {
     pub(super) fn segment_entries(&self, register: usize) -> &[(u32, u32)] {
         let [from, to] = [register, register + 1].map(|i| self.entry_offsets[i] as usize);
         &self.entries[from..to]
+    }
+
+    /// The directions that move a limit row, with the slots of its derivatives.
+    pub(super) fn row_entries(&self, row: usize) -> &[(u32, u32)] {
+        &self.row_entries[row]
     }
 
     /// The directions that move a stored number, with the slots of its derivatives.
@@ -86,6 +93,10 @@ pub(super) fn plan(
         match instruction {
             Instruction::Function { input, output, .. } => {
                 plan.scalar(&mut scalars, &[*input], *output);
+            }
+            Instruction::Hold { passive, output, .. } => {
+                // Derivatives are those of open mode, where nothing is held.
+                plan.scalar(&mut scalars, &[*passive], *output);
             }
             Instruction::Combine { function, output } => {
                 let inputs = &program.combines[*function as usize].inputs;
@@ -126,6 +137,7 @@ pub(super) fn plan(
         }
     }
     plan.coordinate_entries = scalars[..program.stored].to_vec();
+    plan.row_entries = program.rows.iter().map(|&r| scalars[r as usize].clone()).collect();
     plan.entry_offsets.push(0);
     for list in transforms {
         plan.entries.extend(list);

@@ -221,6 +221,10 @@ impl Program {
                     values[i].partials[0] = 0.0;
                 }
             }
+            Instruction::Hold { passive, output, .. } => {
+                pose.scalars[output as usize] = pose.scalars[passive as usize];
+                terms.iter().for_each(|term| add(term, 1.0));
+            }
             Instruction::Chain { .. } | Instruction::BallAt { .. } => {}
         }
     }

@@ -14,6 +14,7 @@ pub struct Pose<S = f64> {
     pub(super) transforms: Vec<Affine<S>>,
     segments: usize,
     stored: usize,
+    rows: Vec<u32>,
 }
 
 impl<S: Scalar> Pose<S> {
@@ -24,6 +25,7 @@ impl<S: Scalar> Pose<S> {
             transforms: vec![Affine::identity(); program.transforms],
             segments: program.segments,
             stored: program.stored,
+            rows: program.rows.clone(),
         }
     }
 
@@ -53,6 +55,11 @@ impl<S: Scalar> Pose<S> {
     /// coupled coordinates as their leaders determine them.
     pub fn effective(&self) -> &[S] {
         &self.scalars[..self.stored]
+    }
+
+    /// A limit row: negative where the posture of the last evaluation breaks that limit.
+    pub fn limit_row(&self, row: usize) -> S {
+        self.scalars[self.rows[row] as usize]
     }
 
     /// The effective stored numbers of one coordinate.

@@ -18,6 +18,9 @@ pub enum Mode {
     Open,
 }
 
+/// Marks a bound that is not there.
+pub(super) const NO_BOUND: u32 = u32::MAX;
+
 /// Marks a chain that starts from nothing instead of from a transform.
 pub(super) const NO_BASE: u32 = u32::MAX;
 
@@ -79,6 +82,8 @@ pub(super) enum Instruction {
     Function { function: u32, input: u32, output: u32 },
     /// `scalars[output] = several[function](scalars[inputs])`.
     Combine { function: u32, output: u32 },
+    /// `scalars[output] = scalars[passive]`, held between other scalars in posed mode.
+    Hold { passive: u32, lower: u32, upper: u32, output: u32 },
     /// `transforms[output] = transforms[base] · steps`.
     Chain { base: u32, first: u32, end: u32, output: u32 },
     /// The commonest chain of character skeletons: a shift and a ball.
@@ -109,6 +114,8 @@ pub struct Program {
     pub(super) laws: Vec<LawCall>,
     /// Register, lower and upper bound of every coordinate that posed mode holds.
     pub(super) limits: Vec<(u32, f64, f64)>,
+    /// Registers that must not be negative in a legal posture, beside those bounds.
+    pub(super) rows: Vec<u32>,
     pub(super) plan: DerivativePlan,
 }
 
@@ -207,6 +214,22 @@ impl Program {
         self.plan.coordinate_entries(model.stored_range(coordinate).start)
     }
 
+    /// How many limits there are that bounds of single coordinates do not express.
+    ///
+    /// Each is a number that a legal posture does not make negative, in radians or metres: the
+    /// distance of a passive angle from the bound that its driver sets, or of a coordinate that
+    /// follows others from its range. [`Pose::limit_row`] has the number of the last evaluation.
+    pub fn limit_row_len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Directions that move a limit row, each with the slot of its derivative in a [`Jacobian`].
+    ///
+    /// [`Jacobian`]: super::Jacobian
+    pub fn limit_row_directions(&self, row: usize) -> &[(u32, u32)] {
+        self.plan.row_entries(row)
+    }
+
     /// Computes the transforms of all segments at the requested coordinates.
     ///
     /// `requested` holds the stored numbers of all coordinates in the model's order, in radians and
@@ -237,7 +260,7 @@ impl Program {
                     pose.transforms[output as usize] =
                         run_chain(self, steps, from, &pose.scalars, &pose.transforms, &mut Silent);
                 }
-                _ => self.run_scalar(&run[0], &mut pose.scalars),
+                _ => self.run_scalar(&run[0], mode, &mut pose.scalars),
             }
         }
         Ok(())
@@ -274,7 +297,12 @@ impl Program {
 
     /// Runs an instruction that makes a scalar.
     #[inline(always)]
-    pub(super) fn run_scalar<S: Scalar>(&self, instruction: &Instruction, scalars: &mut [S]) {
+    pub(super) fn run_scalar<S: Scalar>(
+        &self,
+        instruction: &Instruction,
+        mode: Mode,
+        scalars: &mut [S],
+    ) {
         match *instruction {
             Instruction::Function { function, input, output } => {
                 scalars[output as usize] =
@@ -288,6 +316,20 @@ impl Program {
                     *value = scalars[input as usize];
                 }
                 scalars[output as usize] = call.function.apply(&values[..n]);
+            }
+            Instruction::Hold { passive, lower, upper, output } => {
+                let mut value = scalars[passive as usize];
+                if mode == Mode::Posed {
+                    if lower != NO_BOUND {
+                        let bound = scalars[lower as usize];
+                        value = value.select_less(bound, bound, value);
+                    }
+                    if upper != NO_BOUND {
+                        let bound = scalars[upper as usize];
+                        value = bound.select_less(value, bound, value);
+                    }
+                }
+                scalars[output as usize] = value;
             }
             Instruction::Chain { .. } | Instruction::BallAt { .. } => {}
         }

@@ -6,8 +6,8 @@ use super::{
     Model, NamedComponent, Segment, SegmentId, UpAxis,
 };
 use crate::component::{
-    Ball, Combine, Component, ConstantCurvature, Ellipsoid, Map, Pivot, Place, Product, Rotate,
-    Source, Translate,
+    Ball, Combine, Component, ConstantCurvature, Depend, Ellipsoid, Map, Pivot, Place, Product,
+    Rotate, Source, Translate,
 };
 use crate::limit::Range;
 use condyle_math::function::{Function, FunctionOfSeveral};
@@ -143,6 +143,12 @@ impl ModelBuilder {
         Source::Output(ComponentId(self.model.components.len() as u32 - 1), 0)
     }
 
+    /// A component that was made before, to be changed in place: for networks whose components are
+    /// read in any order.
+    pub fn component_mut(&mut self, id: ComponentId) -> &mut Component {
+        &mut self.model.components[id.index()].component
+    }
+
     /// A function of a scalar.
     pub fn map(
         &mut self,
@@ -164,6 +170,11 @@ impl ModelBuilder {
         function: FunctionOfSeveral,
     ) -> Source {
         self.component(set, name, Component::Combine(Combine { inputs, function }))
+    }
+
+    /// A scalar held between bounds that another sets.
+    pub fn depend(&mut self, set: JointSetId, name: &str, depend: Depend) -> Source {
+        self.component(set, name, Component::Depend(depend))
     }
 
     /// A rotation about a fixed axis.

@@ -4,7 +4,7 @@ use condyle_math::function::{
     Curve, Function, FunctionOfSeveral, MultivariatePolynomial, Polynomial, SimmSpline,
 };
 use condyle_math::{Affine, Quat, Vec3};
-use condyle_model::component::{Centre, ConstantCurvature, Pivot};
+use condyle_model::component::{Centre, ConstantCurvature, Depend, Pivot};
 use condyle_model::{CoordinateKind, JointSetId, Model, ModelBuilder, Range, SegmentId, Source};
 
 /// SplitMix64 (Steele, Lea & Flood 2014): reproducible everywhere, no dependency.
@@ -154,7 +154,17 @@ fn grow_component(
 ) {
     let name = format!("component_{number}");
     let any = |dice: &mut Dice| scalars[dice.below(scalars.len())];
-    match dice.below(10) {
+    match dice.below(11) {
+        9 => {
+            let (passive, driver) = (any(dice), any(dice));
+            let (lower, upper) = (dice.function(), dice.function());
+            let depend = match dice.below(3) {
+                0 => Depend { passive, driver, lower: Some(lower), upper: None },
+                1 => Depend { passive, driver, lower: None, upper: Some(upper) },
+                _ => Depend { passive, driver, lower: Some(lower), upper: Some(upper) },
+            };
+            scalars.push(b.depend(set, &name, depend));
+        }
         0 => {
             let (input, function) = (any(dice), dice.function());
             scalars.push(b.map(set, &name, input, function));

@@ -51,9 +51,13 @@ proptest! {
         let program = Program::compile(&model);
         let (mut open, mut posed) = (Pose::new(&program), Pose::new(&program));
         program.evaluate(&stored, Mode::Posed, &mut posed).unwrap();
-        let legal = posed.effective().to_vec();
-        program.evaluate(&legal, Mode::Open, &mut open).unwrap();
-        prop_assert_eq!(open.segments(), posed.segments());
+        let within = posed.effective().to_vec();
+        program.evaluate(&within, Mode::Open, &mut open).unwrap();
+        // Ranges are met; the rows say whether every other limit is.
+        let legal = (0..program.limit_row_len()).all(|row| open.limit_row(row) >= 0.0);
+        if legal {
+            prop_assert_eq!(open.segments(), posed.segments());
+        }
     }
 
     #[test]

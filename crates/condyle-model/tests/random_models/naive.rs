@@ -35,6 +35,15 @@ impl<'a> Evaluator<'a> {
                     let x = self.scalar(map.input);
                     map.functions[output as usize].value_and_slope(x).0
                 }
+                Component::Depend(depend) => {
+                    let (mut x, d) = (self.scalar(depend.passive), self.scalar(depend.driver));
+                    let bound = |f: &condyle_math::function::Function| f.value_and_slope(d).0;
+                    if self.mode == Mode::Posed {
+                        x = depend.lower.as_ref().map_or(x, |f| x.max(bound(f)));
+                        x = depend.upper.as_ref().map_or(x, |f| x.min(bound(f)));
+                    }
+                    x
+                }
                 Component::Combine(combine) => {
                     let x: Vec<f64> = combine.inputs.iter().map(|&s| self.scalar(s)).collect();
                     combine.function.apply(&x)
