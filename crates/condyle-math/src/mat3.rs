@@ -1,6 +1,6 @@
 //! Three-by-three matrices, stored by columns.
 
-use crate::{Scalar, Vec3};
+use crate::{Quat, Scalar, Vec3};
 use std::ops::Mul;
 
 /// A three-by-three matrix: a rotation, or any linear map.
@@ -103,6 +103,13 @@ impl<S: Scalar> Mat3<S> {
             Vec3::new(self.x.y, self.y.y, self.z.y),
             Vec3::new(self.x.z, self.y.z, self.z.z),
         )
+    }
+
+    /// The rotation vector of a rotation: its axis times its angle in radians, in [0, π].
+    ///
+    /// By way of Shepperd's quaternion, the largest of whose components is chosen by the value.
+    pub fn log(self) -> Vec3<S> {
+        Quat::from_mat3(self).log()
     }
 
     /// The determinant.

@@ -46,29 +46,6 @@ impl Quat<f64> {
         let between = self.conjugate() * other;
         2.0 * between.vector().norm().atan2(between.w.abs())
     }
-
-    /// The rotation of a matrix, by Shepperd's choice of the largest component.
-    ///
-    /// `rotation` must be a proper rotation; small deviations are absorbed by normalising.
-    pub fn from_mat3(rotation: Mat3<f64>) -> Self {
-        let m = |r: usize, c: usize| rotation.at(r, c);
-        let trace = m(0, 0) + m(1, 1) + m(2, 2);
-        let candidates = [m(0, 0), m(1, 1), m(2, 2), trace];
-        let largest = (0..4).max_by(|&a, &b| candidates[a].total_cmp(&candidates[b])).unwrap_or(3);
-        let q = match largest {
-            3 => [m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1), 1.0 + trace],
-            i => {
-                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                let mut q = [0.0; 4];
-                q[i] = 1.0 + m(i, i) - m(j, j) - m(k, k);
-                q[j] = m(j, i) + m(i, j);
-                q[k] = m(k, i) + m(i, k);
-                q[3] = m(k, j) - m(j, k);
-                q
-            }
-        };
-        Self::from(q).normalized()
-    }
 }
 
 impl<S: Copy> From<[S; 4]> for Quat<S> {
@@ -93,6 +70,39 @@ impl<S: Copy> Quat<S> {
 }
 
 impl<S: Scalar> Quat<S> {
+    /// The rotation of a matrix, by Shepperd's formulas.
+    ///
+    /// All four are evaluated and the one with the largest divisor is taken, so there is no branch
+    /// on a value. `rotation` must be a proper rotation; small deviations are absorbed by normalising.
+    pub fn from_mat3(rotation: Mat3<S>) -> Self {
+        let (a, b, c) = (rotation.x, rotation.y, rotation.z);
+        let one = S::one();
+        // Column j holds the images of axis j: entry (i, j) is a.y for (1, 0), and so on.
+        let squares = [
+            one + a.x - b.y - c.z,
+            one - a.x + b.y - c.z,
+            one - a.x - b.y + c.z,
+            one + a.x + b.y + c.z,
+        ];
+        let pairs = [b.x + a.y, c.x + a.z, c.y + b.z];
+        let turns = [b.z - c.y, c.x - a.z, a.y - b.x];
+        let candidates = [
+            [squares[0], pairs[0], pairs[1], turns[0]],
+            [pairs[0], squares[1], pairs[2], turns[1]],
+            [pairs[1], pairs[2], squares[2], turns[2]],
+            [turns[0], turns[1], turns[2], squares[3]],
+        ];
+        let mut best = candidates[3];
+        let mut largest = squares[3];
+        for (candidate, square) in candidates.into_iter().zip(squares).take(3) {
+            for (kept, new) in best.iter_mut().zip(candidate) {
+                *kept = largest.select_less(square, new, *kept);
+            }
+            largest = largest.select_less(square, square, largest);
+        }
+        Self::from(best).normalized()
+    }
+
     /// The rotation by `angle` (radians) about an axis of length 1.
     #[inline(always)]
     pub fn from_axis_angle(axis: Vec3<S>, angle: S) -> Self {

@@ -45,6 +45,11 @@ impl PiecewiseLinear {
         (self.y[i] + slope * (at - self.x[i]), slope)
     }
 
+    /// The knots, argument and value.
+    pub fn knots(&self) -> impl ExactSizeIterator<Item = (f64, f64)> + '_ {
+        self.x.iter().copied().zip(self.y.iter().copied())
+    }
+
     /// First and last argument.
     pub fn domain(&self) -> (f64, f64) {
         (self.x[0], self.x[self.x.len() - 1])

@@ -25,6 +25,11 @@ impl Polynomial {
         Self { ascending: coefficients }
     }
 
+    /// The coefficients, that of the constant term first.
+    pub fn ascending(&self) -> &[f64] {
+        &self.ascending
+    }
+
     /// Value and derivative at `x`, by Horner's rule.
     #[inline]
     pub fn value_and_slope(&self, x: f64) -> (f64, f64) {

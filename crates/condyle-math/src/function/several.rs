@@ -101,6 +101,22 @@ impl MultivariatePolynomial {
         Ok(Self { dimension, coefficients: coefficients.to_vec(), exponents: terms })
     }
 
+    /// The number of variables.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// The highest total power of a term that is given.
+    pub fn order(&self) -> usize {
+        let total = |powers: &[u8]| powers.iter().map(|&p| usize::from(p)).sum();
+        self.exponents.chunks_exact(self.dimension).map(total).max().unwrap_or(0)
+    }
+
+    /// The coefficients, in the order of [`MultivariatePolynomial::up_to_order`].
+    pub fn coefficients(&self) -> &[f64] {
+        &self.coefficients
+    }
+
     /// The value at `x` (one number for each variable).
     #[inline]
     pub fn apply<S: Scalar>(&self, x: &[S]) -> S {

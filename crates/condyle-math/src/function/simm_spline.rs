@@ -111,9 +111,9 @@ impl SimmSpline {
         ]
     }
 
-    /// The arguments of the knots.
-    pub fn knots(&self) -> &[f64] {
-        &self.x
+    /// The knots, argument and value.
+    pub fn knots(&self) -> impl ExactSizeIterator<Item = (f64, f64)> + '_ {
+        self.x.iter().copied().zip(self.cubic.iter().map(|c| c[0]))
     }
 
     /// First and last argument.

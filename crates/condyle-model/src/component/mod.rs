@@ -17,6 +17,7 @@
 //! | [`Place`] | nothing → a fixed transform |
 //! | [`Ellipsoid`] | three angles → a frame that glides on an ellipsoid |
 //! | [`ConstantCurvature`] | three angles → the end of an arc of fixed length |
+//! | [`Compensate`] | motions of ancestors → the rotation that undoes them |
 //! | [`Product`] | transforms → their product |
 //!
 //! To add one: a file here with its struct and its formula, a variant of [`Component`], its ports
@@ -25,6 +26,7 @@
 
 mod ball;
 mod combine;
+mod compensate;
 mod constant_curvature;
 mod depend;
 mod ellipsoid;
@@ -37,6 +39,7 @@ mod translate;
 
 pub use ball::Ball;
 pub use combine::Combine;
+pub use compensate::Compensate;
 pub use constant_curvature::ConstantCurvature;
 pub use depend::Depend;
 pub use ellipsoid::Ellipsoid;
@@ -99,6 +102,8 @@ pub enum Component {
     Ellipsoid(Ellipsoid),
     /// Bending along an arc.
     ConstantCurvature(ConstantCurvature),
+    /// The rotation that undoes what ancestors did.
+    Compensate(Compensate),
     /// Product of transforms.
     Product(Product),
 }
@@ -117,11 +122,15 @@ impl Component {
             Self::Place(_) => "place",
             Self::Ellipsoid(_) => "ellipsoid",
             Self::ConstantCurvature(_) => "constant_curvature",
+            Self::Compensate(_) => "compensate",
             Self::Product(_) => "product",
         }
     }
 
     /// The inputs: the name and type of each port, and where it is connected.
+    ///
+    /// A [`Compensate`] names segments and has no ports: what it reads are their motions, which
+    /// [`Model::reads`](crate::Model::reads) finds.
     pub fn inputs(&self) -> Vec<(&'static str, PortType, Source)> {
         use PortType::{Orientation, Scalar, Transform};
         let three = |names: [&'static str; 3], sources: [Source; 3]| {
@@ -135,7 +144,7 @@ impl Component {
             Self::Pivot(c) => vec![("angle", Scalar, c.angle)],
             Self::Translate(c) => vec![("distance", Scalar, c.distance)],
             Self::Ball(c) => vec![("orientation", Orientation, c.orientation)],
-            Self::Place(_) => vec![],
+            Self::Place(_) | Self::Compensate(_) => vec![],
             Self::Ellipsoid(c) => three(["about_x", "about_y", "about_z"], c.angles),
             Self::ConstantCurvature(c) => three(["about_x", "about_z", "about_y"], c.angles),
             Self::Product(c) => c.factors.iter().map(|&s| ("factors", Transform, s)).collect(),

@@ -15,6 +15,15 @@ pub(super) trait Recorder<S> {
     fn law(&mut self, program: &Program, law: u32, before: Affine<S>);
     /// A transform computed before, about to be multiplied to `before`.
     fn transform(&mut self, program: &Program, register: u32, before: Affine<S>);
+    /// A power of the rotation of a transform computed before, about to be multiplied to `before`.
+    fn power(
+        &mut self,
+        program: &Program,
+        register: u32,
+        exponent: f64,
+        rotation: Mat3<S>,
+        before: Affine<S>,
+    );
 }
 
 /// Records nothing: plain evaluation.
@@ -27,6 +36,19 @@ impl<S> Recorder<S> for Silent {
     fn law(&mut self, _: &Program, _: u32, _: Affine<S>) {}
     #[inline(always)]
     fn transform(&mut self, _: &Program, _: u32, _: Affine<S>) {}
+    #[inline(always)]
+    fn power(&mut self, _: &Program, _: u32, _: f64, _: Mat3<S>, _: Affine<S>) {}
+}
+
+/// A rotation raised to a power: exp(p·log R); plain for 1, 0 and -1.
+#[inline]
+pub(super) fn power<S: Scalar>(rotation: Mat3<S>, exponent: f64) -> Mat3<S> {
+    match exponent {
+        1.0 => rotation,
+        0.0 => Mat3::identity(),
+        -1.0 => rotation.transpose(),
+        _ => Quat::exp(rotation.log() * S::from_f64(exponent)).to_mat3(),
+    }
 }
 
 /// The product of a base transform and the steps after it.
@@ -89,6 +111,11 @@ pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
             Step::Transform(register) => {
                 recorder.transform(program, register, frame);
                 frame = frame * transforms[register as usize];
+            }
+            Step::Power { of, exponent } => {
+                let rotation = transforms[of as usize].linear;
+                recorder.power(program, of, exponent, rotation, frame);
+                frame.linear = r * power(rotation, exponent);
             }
         }
     }

@@ -3,8 +3,9 @@
 use super::jacobian::Jacobian;
 use super::pose::Pose;
 use super::program::Program;
+use super::rotation_rate::log_rate;
 use crate::model::{Condition, CoordinateId, Model};
-use condyle_math::{Affine, Quat, Vec3};
+use condyle_math::{Affine, Vec3};
 
 /// Residual rows of all closures of a model, and their dense derivative.
 ///
@@ -92,7 +93,7 @@ impl ClosureRows {
                     let [a, b]: [Affine; 2] = at.map(|(s, frame)| pose.frame(s) * frame);
                     // ρ = log(R_a·R_bᵀ), in the world; near closure ρ̇ = ω_a - ω_b.
                     let between = a.linear * b.linear.transpose();
-                    let turn = Quat::from_mat3(between).log();
+                    let turn = between.log();
                     let gap = a.translation - b.translation;
                     residuals[..3].copy_from_slice(&gap.to_array());
                     residuals[3..].copy_from_slice(&turn.to_array());
@@ -126,20 +127,4 @@ impl ClosureRows {
             }
         }
     }
-}
-
-/// The rate of the rotation vector ρ when its rotation turns with `spin` from the left.
-///
-/// ρ̇ = ω - ½ ρ × ω + (1/θ² - (1 + cos θ)/(2 θ sin θ)) ρ × (ρ × ω), the inverse left Jacobian of SO(3).
-fn log_rate(turn: Vec3, spin: Vec3) -> Vec3 {
-    let square = turn.norm_squared();
-    let factor = if square < 1e-6 {
-        1.0 / 12.0 + square / 720.0
-    } else {
-        let angle = square.sqrt();
-        let (s, c) = angle.sin_cos();
-        1.0 / square - (1.0 + c) / (2.0 * angle * s.max(1e-12))
-    };
-    let cross = turn.cross(spin);
-    spin - cross * 0.5 + turn.cross(cross) * factor
 }

@@ -2,7 +2,7 @@
 
 use super::derivative_plan::{DerivativePlan, plan};
 use super::program::{AnyLaw, CombineCall, Instruction, LawCall, NO_BASE, NO_BOUND, Program, Step};
-use crate::component::{Component, Depend, Source};
+use crate::component::{Compensate, Component, Depend, Source};
 use crate::model::{ComponentId, CoordinateKind, Model, Node, SegmentId, dependency_order};
 use condyle_math::function::FunctionOfSeveral;
 use condyle_math::{Affine, Mat3, Vec3};
@@ -23,6 +23,8 @@ struct Compiler<'m> {
     outputs: Vec<Vec<Scalar>>,
     /// The register of each transform component that several things read.
     shared: Vec<Option<u32>>,
+    /// For each compensation the path as it is and as it should be.
+    compensations: Vec<Option<(u32, u32)>>,
     /// How many things read each transform component.
     readers: Vec<usize>,
     needed: Vec<bool>,
@@ -57,6 +59,7 @@ pub(super) fn compile(model: &Model) -> Program {
             .collect(),
         outputs: vec![vec![]; components],
         shared: vec![None; components],
+        compensations: vec![None; components],
         readers: vec![0; components],
         needed: vec![false; components],
     };
@@ -114,7 +117,7 @@ impl Compiler<'_> {
             if !self.needed[id.index()] {
                 continue;
             }
-            for (_, _, source) in self.model.components[id.index()].component.inputs() {
+            for source in self.model.reads(id) {
                 if let Source::Output(input, _) = source {
                     self.needed[input.index()] = true;
                     self.readers[input.index()] += 1;
@@ -224,7 +227,10 @@ impl Compiler<'_> {
                 let result = self.depend(depend);
                 self.outputs[id.index()].push(result);
             }
-            _ => {
+            component => {
+                if let Component::Compensate(compensate) = component {
+                    self.compensations[id.index()] = Some(self.paths(compensate));
+                }
                 if self.readers[id.index()] > 1 {
                     let register = self.program.transforms as u32;
                     self.program.transforms += 1;
@@ -235,6 +241,35 @@ impl Compiler<'_> {
                 }
             }
         }
+    }
+
+    /// The rotations from the topmost compensated ancestor's parent to the segment's: as they are,
+    /// and with what is compensated taken away.
+    fn paths(&mut self, compensate: &Compensate) -> (u32, u32) {
+        let path = self.model.compensated_path(compensate);
+        let mut registers = [0; 2];
+        for (register, take) in registers.iter_mut().zip([0.0, compensate.weight]) {
+            let mut steps = vec![];
+            for &id in &path {
+                let segment = self.model.segment(id);
+                self.fixed(Affine::from_rotation(segment.joint_in_parent.linear), &mut steps);
+                if let Some(Source::Output(motion, _)) = segment.motion
+                    && let Some(of) = self.shared[motion.index()]
+                {
+                    let named = compensate.ancestors.contains(&id);
+                    let exponent = if named { 1.0 - take } else { 1.0 };
+                    if exponent != 0.0 {
+                        steps.push(Step::Power { of, exponent });
+                    }
+                }
+                let back = segment.joint_in_segment.linear.transpose();
+                self.fixed(Affine::from_rotation(back), &mut steps);
+            }
+            *register = self.program.transforms as u32;
+            self.program.transforms += 1;
+            self.chain(NO_BASE, steps, *register);
+        }
+        (registers[0], registers[1])
     }
 
     /// A passive scalar between bounds that a driver sets: the held value, and a row for each side.
@@ -344,6 +379,14 @@ impl Compiler<'_> {
                 }
                 Component::ConstantCurvature(law) => {
                     self.law(AnyLaw::ConstantCurvature(law.clone()), &law.angles, steps);
+                }
+                Component::Compensate(compensate) => {
+                    let Some((is, should)) = self.compensations[id.index()] else { continue };
+                    let joint = self.model.segment(compensate.segment).joint_in_parent.linear;
+                    self.fixed(Affine::from_rotation(joint.transpose()), steps);
+                    steps.push(Step::Power { of: is, exponent: -1.0 });
+                    steps.push(Step::Power { of: should, exponent: 1.0 });
+                    self.fixed(Affine::from_rotation(joint), steps);
                 }
                 Component::Map(_) | Component::Combine(_) | Component::Depend(_) => {}
             }

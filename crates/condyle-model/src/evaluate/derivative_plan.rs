@@ -125,7 +125,7 @@ pub(super) fn plan(
                                 plan.unit(&mut moving, &scalars[*input as usize]);
                             }
                         }
-                        Step::Transform(register) => {
+                        Step::Transform(register) | Step::Power { of: register, .. } => {
                             for (direction, _) in &transforms[register as usize] {
                                 plan.unit(&mut moving, &one.map(|slot| (*direction, slot)));
                             }

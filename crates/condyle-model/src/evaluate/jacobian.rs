@@ -4,9 +4,10 @@ use super::chain::{Recorder, run_chain};
 use super::derivative_plan::{Start, Term};
 use super::pose::Pose;
 use super::program::{Instruction, Mode, NO_BASE, Program, SizeMismatch};
+use super::rotation_rate::{exp_rate, log_rate};
 use crate::component::{Law, MOST_COMBINED, MOST_LAW_INPUTS};
 use crate::model::SegmentId;
-use condyle_math::{Affine, Dual, Quat, Twist, Vec3};
+use condyle_math::{Affine, Dual, Mat3, Quat, Twist, Vec3};
 
 /// World generators of one evaluation.
 ///
@@ -104,13 +105,35 @@ impl Recorder<f64> for Tape<'_, '_> {
         };
         let whole = |f: &dyn Fn(Dual<MOST_LAW_INPUTS>) -> f64| {
             let l = moved.linear;
-            let linear = condyle_math::Mat3::from_columns(part(l.x, f), part(l.y, f), part(l.z, f));
+            let linear = Mat3::from_columns(part(l.x, f), part(l.y, f), part(l.z, f));
             Affine::new(linear, part(moved.translation, f))
         };
         let value = whole(&|d| d.value);
         for i in 0..call.inputs.len() {
             let derivative = whole(&|d| d.partials[i]);
             self.emit(|| Twist::from_derivative(value, derivative).transformed(before));
+        }
+    }
+
+    fn power(
+        &mut self,
+        program: &Program,
+        register: u32,
+        exponent: f64,
+        rotation: Mat3,
+        before: Affine,
+    ) {
+        let turn = rotation.log();
+        let raised = turn * exponent;
+        for &(_, twist) in program.plan.segment_entries(register as usize) {
+            let spin = self.twists[twist as usize].angular;
+            // d exp(p·ρ) = J(p·ρ)·p·J(ρ)⁻¹·ω, with J the left Jacobian of SO(3).
+            let moved = match exponent {
+                1.0 => spin,
+                -1.0 => -(rotation.transpose() * spin),
+                _ => exp_rate(raised, log_rate(turn, spin) * exponent),
+            };
+            self.emit(|| Twist::rotation(before.linear * moved, before.translation));
         }
     }
 

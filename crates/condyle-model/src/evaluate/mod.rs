@@ -25,6 +25,7 @@ mod derivative_plan;
 mod jacobian;
 mod pose;
 mod program;
+mod rotation_rate;
 
 pub use closure::ClosureRows;
 pub use jacobian::Jacobian;

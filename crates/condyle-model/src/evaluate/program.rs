@@ -47,6 +47,8 @@ pub(super) enum Step {
     Law(u32),
     /// A transform computed before.
     Transform(u32),
+    /// A power of the rotation of a transform computed before; -1 is its inverse.
+    Power { of: u32, exponent: f64 },
 }
 
 /// A smooth law with the registers it reads.

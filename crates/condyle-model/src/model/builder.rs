@@ -6,8 +6,8 @@ use super::{
     Model, NamedComponent, Segment, SegmentId, UpAxis,
 };
 use crate::component::{
-    Ball, Combine, Component, ConstantCurvature, Depend, Ellipsoid, Map, Pivot, Place, Product,
-    Rotate, Source, Translate,
+    Ball, Combine, Compensate, Component, ConstantCurvature, Depend, Ellipsoid, Map, Pivot, Place,
+    Product, Rotate, Source, Translate,
 };
 use crate::limit::Range;
 use condyle_math::function::{Function, FunctionOfSeveral};
@@ -235,6 +235,11 @@ impl ModelBuilder {
         column: ConstantCurvature,
     ) -> Source {
         self.component(set, name, Component::ConstantCurvature(column))
+    }
+
+    /// The rotation that undoes what ancestors did, for the joint of a segment.
+    pub fn compensate(&mut self, set: JointSetId, name: &str, compensate: Compensate) -> Source {
+        self.component(set, name, Component::Compensate(compensate))
     }
 
     /// A product of transforms, the factor nearest to the parent first.

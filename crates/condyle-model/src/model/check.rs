@@ -1,7 +1,7 @@
 //! What makes a model whole: names, types, places and circles, checked once when it is built.
 
 use super::{ComponentId, CoordinateId, CoordinateKind, Model, SegmentId};
-use crate::component::{Component, MOST_COMBINED, PortType, Source};
+use crate::component::{Compensate, Component, MOST_COMBINED, PortType, Source};
 use std::collections::HashMap;
 use std::fmt;
 
@@ -256,6 +256,9 @@ fn check_components(model: &Model, findings: &mut Vec<Finding>) {
                 ));
             }
         }
+        if let Component::Compensate(c) = &named.component {
+            check_compensate(model, &place, c, findings);
+        }
         if let Component::Combine(c) = &named.component
             && c.inputs.len() != c.function.arity()
         {
@@ -280,6 +283,37 @@ fn check_components(model: &Model, findings: &mut Vec<Finding>) {
                 format!("combine at most {MOST_COMBINED} scalars at a time"),
             ));
         }
+    }
+}
+
+fn check_compensate(model: &Model, place: &str, c: &Compensate, findings: &mut Vec<Finding>) {
+    if !(0.0..=1.0).contains(&c.weight) {
+        findings.push(finding(
+            Severity::Error,
+            "model/weight",
+            format!("{place} has the weight {}", c.weight),
+            "give a weight from 0 (nothing is undone) to 1 (all is)",
+        ));
+    }
+    let mut ancestors = vec![];
+    let mut here = model.segment(c.segment).parent;
+    while let Some(id) = here
+        && ancestors.len() < model.segments.len()
+    {
+        ancestors.push(id);
+        here = model.segment(id).parent;
+    }
+    for id in c.ancestors.iter().filter(|id| !ancestors.contains(id)) {
+        findings.push(finding(
+            Severity::Error,
+            "model/not-an-ancestor",
+            format!(
+                "{place} compensates `{}`, which is no ancestor of `{}`",
+                model.segment(*id).name,
+                model.segment(c.segment).name
+            ),
+            "name segments on the way from this one to the root",
+        ));
     }
 }
 
@@ -316,8 +350,8 @@ pub(crate) fn dependency_order(model: &Model) -> Result<Vec<Node>, Vec<String>> 
         if node < coordinates {
             model.coordinates[node].follows.into_iter().map(number).collect()
         } else {
-            let component = &model.components[node - coordinates].component;
-            component.inputs().into_iter().map(|(_, _, source)| number(source)).collect()
+            let id = ComponentId((node - coordinates) as u32);
+            model.reads(id).into_iter().map(number).collect()
         }
     };
     let name = |node: usize| {

@@ -20,7 +20,7 @@ pub(crate) use check::{Node, dependency_order};
 
 pub use crate::position::{ComponentId, CoordinateId, JointSetId, SegmentId};
 
-use crate::component::Component;
+use crate::component::{Compensate, Component, Source};
 use condyle_math::{Quat, Vec3};
 use std::fmt;
 
@@ -188,6 +188,35 @@ impl Model {
             let turned = Quat::from(q) * Quat::exp(Vec3::from(turn));
             moved[from].copy_from_slice(&turned.normalized().to_array());
         }
+    }
+
+    /// Everything that a component reads: its ports, and the motions that a compensation undoes.
+    pub fn reads(&self, id: ComponentId) -> Vec<Source> {
+        match &self.components[id.index()].component {
+            Component::Compensate(c) => self
+                .compensated_path(c)
+                .into_iter()
+                .filter_map(|segment| self.segment(segment).motion)
+                .collect(),
+            other => other.inputs().into_iter().map(|(_, _, source)| source).collect(),
+        }
+    }
+
+    /// The segments from the topmost named ancestor of a compensation down to the parent.
+    pub(crate) fn compensated_path(&self, compensate: &Compensate) -> Vec<SegmentId> {
+        let mut path = vec![];
+        let mut here = self.segment(compensate.segment).parent;
+        // A circle of parents is reported elsewhere; here it only must not go on for ever.
+        while let Some(id) = here
+            && path.len() < self.segments.len()
+        {
+            path.push(id);
+            here = self.segment(id).parent;
+        }
+        let top = path.iter().rposition(|id| compensate.ancestors.contains(id));
+        path.truncate(top.map_or(0, |top| top + 1));
+        path.reverse();
+        path
     }
 
     /// The key of a coordinate in files: its bare name where that is unique, else `joint/name`.

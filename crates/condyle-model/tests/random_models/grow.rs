@@ -4,7 +4,7 @@ use condyle_math::function::{
     Curve, Function, FunctionOfSeveral, MultivariatePolynomial, Polynomial, SimmSpline,
 };
 use condyle_math::{Affine, Quat, Vec3};
-use condyle_model::component::{Centre, ConstantCurvature, Depend, Pivot};
+use condyle_model::component::{Centre, Compensate, ConstantCurvature, Depend, Pivot};
 use condyle_model::{CoordinateKind, JointSetId, Model, ModelBuilder, Range, SegmentId, Source};
 
 /// SplitMix64 (Steele, Lea & Flood 2014): reproducible everywhere, no dependency.
@@ -74,6 +74,7 @@ pub(crate) fn random_model(seed: u64) -> (Model, Vec<f64>) {
     let mut dice = Dice(seed);
     let mut b = ModelBuilder::new("random");
     let mut segments: Vec<SegmentId> = vec![];
+    let mut parents: Vec<Option<SegmentId>> = vec![];
     let mut scalars: Vec<Source> = vec![];
     let mut transforms: Vec<Source> = vec![];
     for i in 0..1 + dice.below(9) {
@@ -82,7 +83,17 @@ pub(crate) fn random_model(seed: u64) -> (Model, Vec<f64>) {
             n => Some(segments[n - 1]),
         };
         let segment = b.segment(&format!("segment_{i}"), parent);
+        parents.push(parent);
         segments.push(segment);
+        let above = |from: SegmentId| {
+            let mut line = vec![];
+            let mut here = Some(from);
+            while let Some(id) = here {
+                line.push(id);
+                here = parents[id.index()];
+            }
+            line
+        };
         let frames = (dice.frame(), dice.frame());
         b.place_joint_frames(segment, frames.0, frames.1);
         let set = b.joint_set(&format!("joint_{i}"));
@@ -95,7 +106,18 @@ pub(crate) fn random_model(seed: u64) -> (Model, Vec<f64>) {
         for c in 0..1 + dice.below(5) {
             grow_component(&mut b, &mut dice, set, c, &mut scalars, &mut transforms);
         }
-        if !transforms.is_empty() && dice.below(8) > 0 {
+        if let Some(parent) = parent
+            && dice.below(3) == 0
+        {
+            // Undo the parent, or all, before a turn of its own.
+            let ancestors = if dice.below(2) == 0 { vec![parent] } else { above(parent) };
+            let weight = [1.0, 1.0, 0.5][dice.below(3)];
+            let compensate = Compensate { segment, ancestors, weight };
+            let undo = b.compensate(set, "compensate", compensate);
+            let own = b.rotate(set, "own", scalars[0], Vec3::X);
+            let motion = b.product(set, "compensated", vec![undo, own]);
+            b.output(set, segment, motion);
+        } else if !transforms.is_empty() && dice.below(8) > 0 {
             // Often the newest transform, sometimes one that moves another segment already.
             let pick = transforms.len() - 1 - dice.below(transforms.len().min(3));
             b.output(set, segment, transforms[pick]);

@@ -103,6 +103,34 @@ impl<'a> Evaluator<'a> {
             Component::Product(c) => {
                 c.factors.iter().fold(Affine::IDENTITY, |t, &f| t * self.transform(f))
             }
+            Component::Compensate(c) => {
+                // Up from the parent to the topmost named ancestor, both paths side by side.
+                let mut chain = vec![];
+                let mut here = self.model.segment(c.segment).parent;
+                while let Some(id) = here {
+                    chain.push(id);
+                    here = self.model.segment(id).parent;
+                }
+                let Some(top) = chain.iter().rposition(|id| c.ancestors.contains(id)) else {
+                    return Affine::IDENTITY;
+                };
+                let (mut is, mut should) = (Mat3::IDENTITY, Mat3::IDENTITY);
+                for id in chain[..=top].iter().rev() {
+                    let s = self.model.segment(*id);
+                    let motion = s.motion.map_or(Mat3::IDENTITY, |m| self.transform(m).linear);
+                    let left = if c.ancestors.contains(id) {
+                        let turn = Quat::from_mat3(motion).log() * (1.0 - c.weight);
+                        Quat::exp(turn).to_mat3()
+                    } else {
+                        motion
+                    };
+                    let back = s.joint_in_segment.linear.transpose();
+                    is = is * s.joint_in_parent.linear * motion * back;
+                    should = should * s.joint_in_parent.linear * left * back;
+                }
+                let joint = self.model.segment(c.segment).joint_in_parent.linear;
+                Affine::from_rotation(joint.transpose() * is.transpose() * should * joint)
+            }
             Component::Ellipsoid(c) => {
                 let [a, b, g] = c.angles.map(|s| self.scalar(s));
                 let r = Mat3::rotation_x(a) * Mat3::rotation_y(b) * Mat3::rotation_z(g);
