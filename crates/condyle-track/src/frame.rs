@@ -97,6 +97,18 @@ impl Tracker<'_> {
         away(a) < away(b) - 1e-6
     }
 
+    /// The largest change of a rotation between two answers, in radians.
+    pub(crate) fn largest_turn(&self, a: &FrameAnswer, b: &FrameAnswer) -> f64 {
+        let rotations = self
+            .model
+            .coordinate_ids()
+            .filter(|&id| self.model.coordinate(id).kind == CoordinateKind::Rotation);
+        rotations
+            .map(|id| self.model.stored_range(id).start)
+            .map(|place| (a.coordinates[place] - b.coordinates[place]).abs())
+            .fold(0.0, f64::max)
+    }
+
     /// The same posture with every angle within half a turn of its default; none if all are.
     fn unwound(&self, stored: &[f64]) -> Option<Vec<f64>> {
         let mut unwound = stored.to_vec();

@@ -22,6 +22,9 @@ pub struct Chunk {
 /// Frames in a chunk.
 const LENGTH: usize = 64;
 
+/// A rotation that changes by more than this from one frame to the next, in radians, is looked at.
+const JUMP: f64 = 0.3;
+
 /// How many first guesses the first frame gets.
 const FIRST_GUESSES: usize = 4;
 
@@ -90,7 +93,46 @@ pub fn solve_chunk(
     let mut answers = vec![key.clone()];
     let rest = chunk.frames.start + 1..end;
     answers.extend(run(tracker, scratch, recorded, rest, key));
+    mend_jumps(tracker, scratch, recorded, chunk.frames.start, &mut answers);
     answers
+}
+
+/// Walks back from every jump, for as long as the posture beyond it also fits the frames before it
+/// better.
+///
+/// Where two minima exist side by side, following frame by frame stays in the old one until it
+/// vanishes; the new one may have been lower for some frames already.
+fn mend_jumps(
+    tracker: &Tracker<'_>,
+    scratch: &mut Scratch,
+    recorded: &dyn Recorded,
+    first: usize,
+    answers: &mut [FrameAnswer],
+) {
+    for position in 1..answers.len() {
+        if tracker.largest_turn(&answers[position - 1], &answers[position]) > JUMP {
+            walk_back(tracker, scratch, recorded, first, &mut answers[..=position]);
+        }
+    }
+}
+
+/// Solves frames again from the one after them, the last being right, until that does not help.
+fn walk_back(
+    tracker: &Tracker<'_>,
+    scratch: &mut Scratch,
+    recorded: &dyn Recorded,
+    first: usize,
+    answers: &mut [FrameAnswer],
+) {
+    for position in (0..answers.len().saturating_sub(1)).rev() {
+        let frame = first + position;
+        let after = answers[position + 1].clone();
+        let again = run(tracker, scratch, recorded, frame..frame + 1, &after);
+        match again.into_iter().next() {
+            Some(again) if better(&again, &answers[position]) => answers[position] = again,
+            _ => break,
+        }
+    }
 }
 
 /// Joins the chunks' answers into one for each frame.
@@ -114,20 +156,12 @@ pub fn stitch(
     for i in (1..chunks.len()).rev() {
         let length = chunks[i - 1].frames.len();
         let Some(seam) = answers[i - 1].get(length) else { continue };
-        let mut from = answers[i][0].clone();
+        let from = answers[i][0].clone();
         if !better(&from, seam) {
             continue;
         }
-        for position in (0..length).rev() {
-            let frame = chunks[i - 1].frames.start + position;
-            let again = run(tracker, scratch, recorded, frame..frame + 1, &from);
-            let Some(again) = again.into_iter().next() else { break };
-            if !better(&again, &answers[i - 1][position]) {
-                break;
-            }
-            from = again.clone();
-            answers[i - 1][position] = again;
-        }
+        answers[i - 1][length] = from;
+        walk_back(tracker, scratch, recorded, chunks[i - 1].frames.start, &mut answers[i - 1]);
     }
     let lengths: Vec<usize> = chunks.iter().map(|c| c.frames.len()).collect();
     answers
