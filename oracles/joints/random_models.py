@@ -13,9 +13,10 @@ OUT_DIR/random_0000.osim and OUT_DIR/random_0000.json with
     coupled   coordinates that follow others
     poses     pose {coordinate: radians or metres}, segments {body: 16 numbers by rows (12 when packed)}, markers {name: place in ground}
 
-A body that OpenSim doubles to open a loop is left out, with its markers. A coordinate goes by its name where that is unique, else by joint/name. Models that OpenSim refuses are counted by reason
-and left out. `--reverse-all` also states ellipsoid,
-scapulothoracic and constant curvature joints backwards, which OpenSim survives only partly. `--pack` writes the first COUNT models and their answers into one compact JSON file.
+Bodies that OpenSim may have doubled to open a loop are left out, with their markers. A coordinate goes by its name where that
+is unique, else by joint/name. Models that OpenSim refuses are counted by reason and left out. `--reverse-all` also states
+ellipsoid, scapulothoracic and constant curvature joints backwards, which OpenSim survives only partly. `--pack` writes the
+first COUNT models and their answers into one compact JSON file.
 """
 import json
 import os
@@ -285,14 +286,15 @@ def base(frame):
     return frame.findBaseFrame().getName()
 
 
-def doubled_bodies(model):
-    """Where two joints carry one body, OpenSim doubles it and, as long as the loop is open, reports the double where one asks
-    for the body: such bodies are not compared."""
+def perhaps_doubled(model):
+    """Where two joints reach one body, OpenSim doubles it and, as long as the loop is open, mostly reports the double where one
+    asks for the body. Which of the two is not always to be told from outside: all that may be doubled are not compared."""
     joints = model.getJointSet()
     if joints.getSize() <= model.getBodySet().getSize():
         return set()
-    count = Counter(base(joints.get(i).getChildFrame()) for i in range(joints.getSize()))
-    return {name for name, times in count.items() if times > 1}
+    ends = [(base(j.getParentFrame()), base(j.getChildFrame())) for j in (joints.get(i) for i in range(joints.getSize()))]
+    count = Counter(name for pair in ends for name in pair)
+    return {child for _, child in ends if count[child] > 1}
 
 
 def answer(path, rng, poses=3, spread=0.7):
@@ -305,7 +307,7 @@ def answer(path, rng, poses=3, spread=0.7):
         bare.setdefault(key.split("/")[-1], key)
     result = {"model": os.path.basename(path), "opensim": osim.GetVersion(), "coupled": [],
               "kinds": {key: c.getMotionType() for key, c in coordinates.items()}, "poses": []}
-    bodies, markers, doubled = model.getBodySet(), model.getMarkerSet(), doubled_bodies(model)
+    bodies, markers, doubled = model.getBodySet(), model.getMarkerSet(), perhaps_doubled(model)
     sound = [b for b in (bodies.get(i) for i in range(bodies.getSize())) if b.getName() not in doubled]
     for _ in range(poses):
         pose = {key: round(float(rng.normal() * spread), 6) for key in coordinates}

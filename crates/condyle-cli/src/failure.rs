@@ -1,8 +1,9 @@
 //! Why a command could not be carried out, and warnings on the way.
 
 use condyle::NameError;
+use condyle::formats::document;
 use condyle::formats::{Diagnostic, Error, Read};
-use condyle::open::{OpenError, located};
+use condyle::open::{Cause, OpenError, located};
 use std::fmt;
 use std::path::Path;
 
@@ -29,7 +30,17 @@ impl fmt::Display for Failure {
 
 impl From<OpenError> for Failure {
     fn from(error: OpenError) -> Self {
-        Self(error.to_string())
+        match &error.cause {
+            Cause::Document { text, errors } => {
+                let name = error.path.display().to_string();
+                let shown: Vec<String> = errors
+                    .iter()
+                    .map(|one| document::render(&name, text, std::slice::from_ref(one)))
+                    .collect();
+                Self(shown.join("error: ").trim_end().to_owned())
+            }
+            _ => Self(error.to_string()),
+        }
     }
 }
 

@@ -7,6 +7,7 @@
 //!
 //! | format | read | write |
 //! | --- | --- | --- |
+//! | model documents (TOML) | [`document::read`] | [`document::write`] |
 //! | TRC marker recordings | [`trc::read`] | [`trc::write`] |
 //! | STO and MOT motions | [`sto::read`] | [`sto::write`] |
 //! | CSV tables | [`csv::read`] | [`csv::write`] |
@@ -16,6 +17,7 @@
 
 pub mod csv;
 mod diagnostic;
+pub mod document;
 pub mod glb;
 pub mod opensim;
 mod recording;

@@ -12,6 +12,7 @@
 //! costs nothing extra. When the model promises less than `tolerance · F`, the last step is still
 //! tried, so that directions that F hardly feels come to rest where the caller's prior wants them.
 
+use crate::elimination::Elimination;
 use crate::quadratic::{QuadraticProgram, Status, Workspace};
 
 /// A smooth problem at a point that moves by steps.
@@ -114,34 +115,6 @@ pub struct Solver {
     inequality_values: Vec<f64>,
 }
 
-/// How the equality rows were made orthonormal, to do the same to their values.
-#[derive(Debug)]
-struct Elimination {
-    rank: usize,
-    picks: Vec<usize>,
-    sizes: Vec<f64>,
-    along: Vec<f64>,
-}
-
-impl Elimination {
-    /// Turns values of the original rows into those of the orthonormal ones; 0 for dropped rows.
-    fn apply(&self, values: &mut [f64]) {
-        let m = values.len();
-        for i in 0..self.rank {
-            values.swap(i, self.picks[i]);
-            values[i] /= self.sizes[i];
-            for k in i + 1..m {
-                values[k] -= self.along[i * m + k] * values[i];
-            }
-        }
-        values[self.rank..].fill(0.0);
-    }
-}
-
-/// An equality row that the others span to within this share of its length adds nothing: loops of
-/// a symmetric or planar model often say the same thing twice.
-const DEPENDENT: f64 = 1e-7;
-
 /// The trust box never grows beyond this many units of `scale`.
 const WIDEST: f64 = 2.0;
 /// A trust box narrower than this cannot lower anything.
@@ -169,12 +142,7 @@ impl Solver {
             inequalities: vec![0.0; inequalities],
             trial_equalities: vec![0.0; equalities],
             trial_inequalities: vec![0.0; inequalities],
-            elimination: Elimination {
-                rank: 0,
-                picks: vec![0; equalities],
-                sizes: vec![0.0; equalities],
-                along: vec![0.0; equalities * equalities],
-            },
+            elimination: Elimination::new(equalities),
             equality_steps: vec![0.0; equalities],
             equality_values: vec![0.0; equalities],
             inequality_values: vec![0.0; inequalities],
@@ -281,44 +249,9 @@ impl Solver {
         summary
     }
 
-    /// Replaces the equality rows C d = -c by orthonormal ones that say the same, and those that
-    /// others span already by zeros (Gram-Schmidt, the longest remaining row first).
+    /// Makes the equality rows orthonormal, and finds how far to go along each.
     fn orthonormalise_equalities(&mut self) {
-        let n = self.step.len();
-        let rows = &mut self.local.equality_rows;
-        let m = self.equality_steps.len();
-        self.elimination.rank = 0;
-        let length = |row: &[f64]| row.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let longest = rows.chunks_exact(n.max(1)).map(length).fold(0.0, f64::max);
-        for i in 0..m {
-            // Rows i.. are orthogonal to those before; take the longest next.
-            let norm = |k: usize, rows: &[f64]| length(&rows[k * n..(k + 1) * n]);
-            let mut pick = i;
-            for k in i + 1..m {
-                if norm(k, rows) > norm(pick, rows) {
-                    pick = k;
-                }
-            }
-            for j in 0..n {
-                rows.swap(i * n + j, pick * n + j);
-            }
-            let size = norm(i, rows);
-            if size <= DEPENDENT * longest || size == 0.0 {
-                rows[i * n..].fill(0.0);
-                break;
-            }
-            self.elimination.rank = i + 1;
-            self.elimination.picks[i] = pick;
-            self.elimination.sizes[i] = size;
-            rows[i * n..(i + 1) * n].iter_mut().for_each(|v| *v /= size);
-            let (done, rest) = rows.split_at_mut((i + 1) * n);
-            let unit = &done[i * n..];
-            for (k, row) in rest.chunks_exact_mut(n).enumerate() {
-                let along: f64 = row.iter().zip(unit).map(|(a, b)| a * b).sum();
-                row.iter_mut().zip(unit).for_each(|(a, b)| *a -= along * b);
-                self.elimination.along[i * m + i + 1 + k] = along;
-            }
-        }
+        self.elimination.orthonormalise(&mut self.local.equality_rows, self.step.len());
         for (step, c) in self.equality_steps.iter_mut().zip(&self.equalities) {
             *step = -c;
         }

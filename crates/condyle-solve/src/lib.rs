@@ -33,5 +33,6 @@
 //! ```
 
 pub mod cholesky;
+mod elimination;
 pub mod least_squares;
 pub mod quadratic;

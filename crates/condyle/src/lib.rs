@@ -50,6 +50,7 @@
 //! [`scene`]. The `condyle` command is these calls and a printer.
 
 pub mod figure;
+pub mod lint;
 pub mod matching;
 pub mod motion;
 pub mod open;

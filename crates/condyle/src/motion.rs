@@ -23,6 +23,42 @@ pub fn columns(model: &Model, id: CoordinateId) -> Vec<String> {
     }
 }
 
+/// One stored number of a model, and the column of a table that holds it.
+pub(crate) struct Cell {
+    pub(crate) coordinate: CoordinateId,
+    /// Which of the coordinate's numbers it is.
+    pub(crate) part: usize,
+    /// Its position among all stored numbers.
+    pub(crate) place: usize,
+    /// The column; none where the table has none.
+    pub(crate) column: Option<usize>,
+    /// What the column's numbers are multiplied by.
+    pub(crate) factor: f64,
+}
+
+/// Where a table holds the numbers of a model, all of them in the model's order.
+pub(crate) fn cells(model: &Model, table: &Table) -> Vec<Cell> {
+    let mut cells = Vec::with_capacity(model.stored_len());
+    for id in model.coordinate_ids() {
+        let coordinate = model.coordinate(id);
+        let degrees =
+            table.angle_unit == AngleUnit::Degrees && coordinate.kind == CoordinateKind::Rotation;
+        let factor = if degrees { 1f64.to_radians() } else { 1.0 };
+        let start = model.stored_range(id).start;
+        let set = &model.joint_sets()[coordinate.joint_set.index()].name;
+        let path = format!("{set}/{}", coordinate.name);
+        let held = |column: &String| {
+            let bare = column.strip_suffix("/value").unwrap_or(column);
+            bare.trim_start_matches('/').ends_with(&path)
+        };
+        for (part, name) in columns(model, id).into_iter().enumerate() {
+            let column = table.column(&name).or_else(|| table.columns.iter().position(held));
+            cells.push(Cell { coordinate: id, part, place: start + part, column, factor });
+        }
+    }
+    cells
+}
+
 impl Motion {
     /// A motion from a table whose columns are named after coordinates.
     ///
@@ -30,31 +66,16 @@ impl Motion {
     /// without a column keep their defaults; columns that are no coordinate are reported.
     pub fn from_table(model: &Model, table: &Table) -> (Self, Vec<Diagnostic>) {
         let mut warnings = vec![];
-        let mut sources: Vec<(usize, usize, f64)> = vec![];
         let mut used = vec![false; table.columns.len()];
         let mut absent = vec![];
-        for id in model.coordinate_ids() {
-            let coordinate = model.coordinate(id);
-            let degrees = table.angle_unit == AngleUnit::Degrees
-                && coordinate.kind == CoordinateKind::Rotation;
-            let factor = if degrees { 1f64.to_radians() } else { 1.0 };
-            let place = model.stored_range(id);
-            for (offset, name) in columns(model, id).into_iter().enumerate() {
-                let set = &model.joint_sets()[coordinate.joint_set.index()].name;
-                let path = format!("{set}/{}", coordinate.name);
-                let held = |column: &String| {
-                    let bare = column.strip_suffix("/value").unwrap_or(column);
-                    bare.trim_start_matches('/').ends_with(&path)
-                };
-                let column = table.column(&name).or_else(|| table.columns.iter().position(held));
-                match column {
-                    Some(column) => {
-                        used[column] = true;
-                        sources.push((place.start + offset, column, factor));
-                    }
-                    None if offset == 0 => absent.push(name),
-                    None => {}
+        let cells = cells(model, table);
+        for cell in &cells {
+            match cell.column {
+                Some(column) => used[column] = true,
+                None if cell.part == 0 => {
+                    absent.push(columns(model, cell.coordinate).swap_remove(0))
                 }
+                None => {}
             }
         }
         if !absent.is_empty() {
@@ -81,9 +102,12 @@ impl Motion {
         let frames = (0..table.rows())
             .map(|row| {
                 let mut stored = defaults.clone();
-                for &(place, column, factor) in &sources {
+                for cell in &cells {
+                    let Some(column) = cell.column else { continue };
                     match table.value(row, column) {
-                        Some(value) if value.is_finite() => stored[place] = value * factor,
+                        Some(value) if value.is_finite() => {
+                            stored[cell.place] = value * cell.factor
+                        }
                         _ => gaps += 1,
                     }
                 }

@@ -1,7 +1,8 @@
 //! Files by path, with errors and warnings that carry the path.
 
+use condyle_formats::document::{self, Document};
 use condyle_formats::opensim::{model as osim, setup};
-use condyle_formats::{Diagnostic, Error, Read, Recording, Table, csv, sto, trc};
+use condyle_formats::{Diagnostic, Error, Place, Read, Recording, Table, csv, sto, trc};
 use condyle_model::Model;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -23,6 +24,13 @@ pub enum Cause {
     Io(std::io::Error),
     /// Its content is wrong.
     Content(Error),
+    /// Its content is wrong, perhaps in several places.
+    Document {
+        /// The text.
+        text: String,
+        /// Everything that is wrong with it.
+        errors: Vec<Diagnostic>,
+    },
     /// Its ending names no format that fits.
     Format {
         /// What was wanted, such as "a model".
@@ -38,6 +46,10 @@ impl fmt::Display for OpenError {
         match &self.cause {
             Cause::Io(error) => write!(f, "{path}: {error}"),
             Cause::Content(error) => write!(f, "{}", located(&self.path, error.diagnostic())),
+            Cause::Document { errors, .. } => {
+                let lines: Vec<String> = errors.iter().map(|e| located(&self.path, e)).collect();
+                f.write_str(&lines.join("\n"))
+            }
             Cause::Format { wanted, known } => {
                 write!(f, "{path}: the ending names no format for {wanted} (known are {known})")
             }
@@ -97,7 +109,43 @@ fn wrong<T>(path: &Path, wanted: &'static str, known: &'static str) -> Result<T,
 pub fn model(path: &Path) -> Result<Read<Model>, OpenError> {
     match ending(path).as_str() {
         "osim" | "xml" => read_with(path, osim::read),
-        _ => wrong(path, "a model", ".osim"),
+        "toml" => Ok(document(path)?.map(|document| document.model)),
+        _ => wrong(path, "a model", ".osim, .toml"),
+    }
+}
+
+/// Opens a model document with all that it includes, from their places relative to it.
+///
+/// # Errors
+/// [`OpenError`] with the path and everything that is wrong.
+pub fn document(path: &Path) -> Result<Read<Document>, OpenError> {
+    let text = utf8(path)?;
+    let mut include = |name: &str| {
+        utf8(&beside(path, name)).map_err(|error| match error.cause {
+            Cause::Io(error) => error.to_string(),
+            Cause::Content(error) => error.to_string(),
+            _ => "it is no text".to_owned(),
+        })
+    };
+    document::read(&text, &mut include).map_err(|errors| OpenError {
+        path: path.to_owned(),
+        cause: Cause::Document { text, errors },
+    })
+}
+
+/// A text in UTF-8, without the mark that some editors put in front.
+fn utf8(path: &Path) -> Result<String, OpenError> {
+    match String::from_utf8(bytes(path)?) {
+        Ok(text) => Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text)),
+        Err(error) => {
+            let valid = error.utf8_error().valid_up_to();
+            let before = &error.as_bytes()[..valid];
+            let line = before.iter().filter(|b| **b == b'\n').count() + 1;
+            let error = Error::new("toml/utf-8", "the text is not UTF-8")
+                .at(Place::at_line(line))
+                .with_help("save it as UTF-8");
+            Err(OpenError { path: path.to_owned(), cause: Cause::Content(error) })
+        }
     }
 }
 

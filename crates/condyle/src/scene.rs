@@ -16,7 +16,7 @@ use condyle_model::{Mode, Model, Pose, Program, SegmentId};
 pub fn scene(model: &Model, motion: &Motion, markers: Option<(&Recording, &[usize])>) -> Scene {
     let program = Program::compile(model);
     let mut pose = Pose::new(&program);
-    let order = parents_first(model);
+    let order = model.parents_first();
     let mut node_of = vec![0usize; order.len()];
     for (node, id) in order.iter().enumerate() {
         node_of[id.index()] = node;
@@ -72,25 +72,6 @@ fn marker_tracks(recording: &Recording, labels: &[usize], times: &[f64]) -> Vec<
             positions: times.iter().map(|&t| recording.position(frame_at(t), label)).collect(),
         })
         .collect()
-}
-
-/// Segments with every parent before its children.
-fn parents_first(model: &Model) -> Vec<SegmentId> {
-    let mut placed = vec![false; model.segments().len()];
-    let mut order = vec![];
-    for start in model.segment_ids() {
-        let mut path = vec![];
-        let mut here = Some(start);
-        while let Some(id) = here
-            && !placed[id.index()]
-        {
-            placed[id.index()] = true;
-            path.push(id);
-            here = model.segment(id).parent;
-        }
-        order.extend(path.into_iter().rev());
-    }
-    order
 }
 
 fn local(model: &Model, pose: &Pose, id: SegmentId) -> LocalPose {

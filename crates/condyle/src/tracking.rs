@@ -4,7 +4,7 @@ use crate::matching::match_markers;
 use crate::motion::Motion;
 use condyle_formats::opensim::setup::{CoordinateTarget, IkSetup, IkTasks};
 use condyle_formats::{Diagnostic, Recording, Table};
-use condyle_model::Model;
+use condyle_model::{CoordinateId, Model};
 use condyle_track::robust::{self, Corrected};
 use condyle_track::sequence;
 use condyle_track::{
@@ -438,6 +438,19 @@ impl Tracking {
                 .map(|(i, a)| (self.frames.start + i, a.status))
                 .collect(),
         }
+    }
+
+    /// Coordinates that touch a bound of their enforced range, with the number of frames in which
+    /// they do.
+    pub fn at_limits(&self, model: &Model) -> Vec<(CoordinateId, usize)> {
+        let touches = |id: CoordinateId| {
+            let (lower, upper) = model.coordinate(id).range.bounds();
+            let place = model.stored_range(id).start;
+            let frames = self.motion.frames.iter();
+            frames.filter(|f| f[place] <= lower || f[place] >= upper).count()
+        };
+        let free = model.coordinate_ids().filter(|&id| model.coordinate(id).follows.is_none());
+        free.map(|id| (id, touches(id))).filter(|(_, frames)| *frames > 0).collect()
     }
 
     /// For each marker used, the RMS and the largest of its errors over the frames that saw it.

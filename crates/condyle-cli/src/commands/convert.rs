@@ -5,13 +5,13 @@ use crate::failure::{Failure, warn_about, warned};
 use crate::motion_format::MotionFormat;
 use crate::output;
 use clap::{Args, ValueEnum};
-use condyle::formats::{AngleUnit, LengthUnit, Recording, Table, csv, sto, trc};
+use condyle::formats::{AngleUnit, LengthUnit, Recording, Table, csv, document, sto, trc};
 use condyle::{Mode, Model, Motion, Pose, Program, open};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(crate) struct Convert {
-    /// A motion (.mot, .sto, .csv), a model (.osim) or a marker recording (.trc).
+    /// A motion (.mot, .sto, .csv), a model (.osim, .toml) or a marker recording (.trc).
     input: PathBuf,
     /// Where to write; `-` is standard output and needs --to.
     output: PathBuf,
@@ -35,11 +35,14 @@ enum Target {
     Glb,
     /// A marker recording.
     Trc,
+    /// A model document.
+    Toml,
 }
 
 /// The combinations that exist, for the message about one that does not.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
-                     to .glb (an animation) or .trc (the model's markers); a model (.osim) to .glb; \
+                     to .glb (an animation) or .trc (the model's markers); a model (.osim, .toml) to .toml or \
+                     .glb; \
                      a recording (.trc) to .trc or .csv";
 
 impl Target {
@@ -57,6 +60,7 @@ impl Target {
             "csv" => Ok(Self::Csv),
             "glb" => Ok(Self::Glb),
             "trc" => Ok(Self::Trc),
+            "toml" => Ok(Self::Toml),
             _ => Err(Failure::new(format!(
                 "{}: the ending names no format that can be written ({KNOWN})",
                 path.display()
@@ -71,12 +75,15 @@ impl Target {
             Self::Sto => Some(MotionFormat::Sto),
             Self::Csv => Some(MotionFormat::Csv),
             Self::Glb => Some(MotionFormat::Glb),
-            Self::Trc => None,
+            Self::Trc | Self::Toml => None,
         }
     }
 
     fn name(self) -> &'static str {
-        self.motion().map_or("trc", MotionFormat::ending)
+        match self {
+            Self::Toml => "toml",
+            _ => self.motion().map_or("trc", MotionFormat::ending),
+        }
     }
 }
 
@@ -84,8 +91,16 @@ impl Convert {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
         let target = Target::of(&self.output, self.to)?;
         let bytes = match open::ending(&self.input).as_str() {
-            "mot" | "sto" | "csv" => self.motion_as(target)?,
-            "osim" | "xml" if target == Target::Glb => {
+            "mot" | "sto" | "csv" if target != Target::Toml => self.motion_as(target)?,
+            "toml" if target == Target::Toml => {
+                // A document is saved as it was written.
+                warned(&self.input, open::document(&self.input)?).source.into_bytes()
+            }
+            "osim" | "xml" if target == Target::Toml => {
+                let model = warned(&self.input, open::model(&self.input)?);
+                document::write(&model).into_bytes()
+            }
+            "osim" | "xml" | "toml" if target == Target::Glb => {
                 let model = warned(&self.input, open::model(&self.input)?);
                 MotionFormat::Glb.encode(&model, &Motion::default(), &self.name(), None)?
             }

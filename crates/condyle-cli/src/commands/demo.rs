@@ -226,18 +226,8 @@ fn findings(model: &Model, robust: &Tracking, off: &Closeness) -> String {
         off.worst.0,
         off.worst.1,
         robust.answers.len(),
-        at_limit(model, robust),
+        robust.at_limits(model).len(),
         model.coordinates().len(),
     ));
     text
-}
-
-/// Coordinates that touch a bound of their range in some frame.
-fn at_limit(model: &Model, tracking: &Tracking) -> usize {
-    let touches = |id: &condyle::CoordinateId| {
-        let (lower, upper) = model.coordinate(*id).range.bounds();
-        let place = model.stored_range(*id).start;
-        tracking.motion.frames.iter().any(|f| f[place] <= lower || f[place] >= upper)
-    };
-    model.coordinate_ids().filter(touches).count()
 }

@@ -71,14 +71,14 @@ impl Content {
 
 fn content(path: &Path) -> Result<Read<Content>, Failure> {
     Ok(match open::ending(path).as_str() {
-        "osim" => open::model(path)?.map(Content::Model),
+        "osim" | "toml" => open::model(path)?.map(Content::Model),
         "trc" => open::recording(path)?.map(Content::Recording),
         "mot" | "sto" | "csv" => open::table(path)?.map(Content::Table),
         "xml" => xml(path)?,
         _ => {
             return Err(Failure::new(format!(
-                "{}: the ending names no format that can be read (known are .osim, .trc, .mot, \
-                 .sto, .csv, and .xml for setups and models)",
+                "{}: the ending names no format that can be read (known are .osim, .toml, .trc, \
+                 .mot, .sto, .csv, and .xml for setups and models)",
                 path.display()
             )));
         }

@@ -1,5 +1,7 @@
 //! The commands, one file each.
 
+mod bench;
+mod check;
 mod convert;
 mod demo;
 mod diff;
@@ -22,6 +24,8 @@ pub(crate) struct Arguments {
 enum Command {
     /// Say what is in a file: segments and coordinates, or markers, frames and gaps.
     Info(info::Info),
+    /// Find what is odd in a model, and where a motion leaves its limits.
+    Check(check::Check),
     /// Pose a model: world transforms of all segments.
     Fk(fk::Fk),
     /// Find the motion of a model that follows recorded markers.
@@ -30,6 +34,8 @@ enum Command {
     Convert(convert::Convert),
     /// Compare two motions, coordinate by coordinate.
     Diff(diff::Diff),
+    /// Measure how fast a model is posed on this machine.
+    Bench(bench::Bench),
     /// The whole story on a recording made from a known motion.
     Demo(demo::Demo),
 }
@@ -47,10 +53,12 @@ pub(crate) enum Outcome {
 pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
     match arguments.command {
         Command::Info(command) => command.run(),
+        Command::Check(command) => command.run(),
         Command::Fk(command) => command.run(),
         Command::Track(command) => command.run(),
         Command::Convert(command) => command.run(),
         Command::Diff(command) => command.run(),
+        Command::Bench(command) => command.run(),
         Command::Demo(command) => command.run(),
     }
 }

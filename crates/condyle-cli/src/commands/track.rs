@@ -8,7 +8,7 @@ use crate::progress::frames_bar;
 use clap::{Args, ValueEnum};
 use condyle::formats::{Recording, csv};
 use condyle::tracking::{Plan, Tracking, track};
-use condyle::{Model, open};
+use condyle::{CoordinateId, Model, open};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -185,16 +185,12 @@ fn report(model: &Model, trial: &Path, recording: &Recording, tracking: &Trackin
         )
         .collect();
     let closure = tracking.answers.iter().map(|a| a.closure_error).fold(0.0, f64::max);
-    let at_limit: Vec<String> = model
-        .coordinate_ids()
-        .filter(|&id| {
-            let (lower, upper) = model.coordinate(id).range.bounds();
-            let place = model.stored_range(id).start;
-            let frames = &tracking.motion.frames;
-            let hits = frames.iter().filter(|f| f[place] <= lower || f[place] >= upper).count();
-            model.coordinate(id).follows.is_none() && 2 * hits > frames.len()
-        })
-        .map(|id| model.coordinate_key(id))
+    let mostly = |(_, frames): &(CoordinateId, usize)| 2 * frames > s.frames;
+    let at_limit: Vec<String> = tracking
+        .at_limits(model)
+        .into_iter()
+        .filter(mostly)
+        .map(|(id, _)| model.coordinate_key(id))
         .collect();
     json!({
         "trial": trial.to_string_lossy(),

@@ -3,8 +3,10 @@
 #[path = "../command/mod.rs"]
 mod command;
 
+mod bench;
 mod convert;
 mod diff;
+mod document;
 mod fk;
 mod info;
 mod leg;

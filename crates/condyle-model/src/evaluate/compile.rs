@@ -69,7 +69,7 @@ pub(super) fn compile(model: &Model) -> Program {
         compiler.node(node);
     }
     compiler.follower_rows();
-    for segment in segment_order(model) {
+    for segment in model.parents_first() {
         compiler.segment(segment);
     }
     let mut directions = vec![None; model.stored_len()];
@@ -80,25 +80,6 @@ pub(super) fn compile(model: &Model) -> Program {
     }
     compiler.program.plan = plan(&compiler.program, model.tangent_len(), &directions);
     compiler.program
-}
-
-/// Segments with every parent before its children.
-fn segment_order(model: &Model) -> Vec<SegmentId> {
-    let mut placed = vec![false; model.segments.len()];
-    let mut order = Vec::with_capacity(placed.len());
-    for start in model.segment_ids() {
-        let mut path = vec![];
-        let mut here = Some(start);
-        while let Some(id) = here
-            && !placed[id.index()]
-        {
-            placed[id.index()] = true;
-            path.push(id);
-            here = model.segment(id).parent;
-        }
-        order.extend(path.into_iter().rev());
-    }
-    order
 }
 
 impl Compiler<'_> {

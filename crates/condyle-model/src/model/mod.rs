@@ -135,6 +135,25 @@ impl Model {
         (0..self.segments.len() as u32).map(SegmentId)
     }
 
+    /// The positions of all segments, every parent before its children.
+    pub fn parents_first(&self) -> Vec<SegmentId> {
+        let mut placed = vec![false; self.segments.len()];
+        let mut order = Vec::with_capacity(placed.len());
+        for start in self.segment_ids() {
+            let mut path = vec![];
+            let mut here = Some(start);
+            while let Some(id) = here
+                && !placed[id.index()]
+            {
+                placed[id.index()] = true;
+                path.push(id);
+                here = self.segment(id).parent;
+            }
+            order.extend(path.into_iter().rev());
+        }
+        order
+    }
+
     /// A coordinate.
     pub fn coordinate(&self, id: CoordinateId) -> &Coordinate {
         &self.coordinates[id.index()]

@@ -1,0 +1,270 @@
+//! `condyle check`: what is odd in a model, and where a motion breaks it.
+
+use super::Outcome;
+use crate::failure::Failure;
+use crate::output::{self, columns};
+use clap::Args;
+use condyle::lint::motion::MotionCheck;
+use condyle::lint::{self, Finding, Severity};
+use condyle::open::{Cause, OpenError};
+use condyle::{CoordinateKind, Model, open};
+use serde_json::{Value, json};
+use std::fmt::Write;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(crate) struct Check {
+    /// The model.
+    model: PathBuf,
+    /// A motion whose columns are named after coordinates.
+    motion: Option<PathBuf>,
+    /// One JSON document on standard output, in radians and metres.
+    #[arg(long)]
+    json: bool,
+}
+
+impl Check {
+    pub(crate) fn run(self) -> Result<Outcome, Failure> {
+        let read = match open::model(&self.model) {
+            Ok(read) => read,
+            Err(error) => return self.contradictory(error),
+        };
+        let model = &read.value;
+        let mut findings = lint::check(model, &read.warnings);
+        let mut motion = None;
+        if let Some(path) = &self.motion {
+            let table = open::table(path)?;
+            let mut check = lint::motion::check(model, &table.value);
+            let said: Vec<Finding> = table.warnings.iter().map(Finding::from).collect();
+            check.findings.splice(0..0, said);
+            motion = Some(check);
+        }
+        if self.json {
+            if let Some(motion) = &motion {
+                findings.extend(motion.findings.iter().cloned());
+            }
+            let broken = findings.iter().any(Finding::counts);
+            output::print_json(&json!({
+                "model": model.name(),
+                "findings": findings.iter().map(finding_json).collect::<Vec<_>>(),
+                "motion": motion.as_ref().map(|motion| motion_json(model, motion)),
+            }))?;
+            return Ok(outcome(broken));
+        }
+        let mut text = head(&self.model.display().to_string(), &findings);
+        grouped(&mut text, &findings);
+        let mut broken = findings.iter().any(Finding::counts);
+        if let (Some(motion), Some(path)) = (&motion, &self.motion) {
+            text.push('\n');
+            motion_text(&mut text, &path.display().to_string(), model, motion);
+            broken |= !motion.holds();
+        }
+        output::print(text.as_bytes())?;
+        Ok(outcome(broken))
+    }
+
+    /// A file that was understood, but whose model contradicts itself, is a finding; any other
+    /// error is unusable input.
+    fn contradictory(&self, error: OpenError) -> Result<Outcome, Failure> {
+        let said = match &error.cause {
+            Cause::Content(content) if content.code().starts_with("model/") => content.diagnostic(),
+            _ => return Err(error.into()),
+        };
+        let finding = Finding { severity: Severity::Error, ..Finding::from(said) };
+        if self.json {
+            output::print_json(&json!({
+                "model": Value::Null,
+                "findings": [finding_json(&finding)],
+                "motion": Value::Null,
+            }))?;
+        } else {
+            let findings = [finding];
+            let mut text = head(&self.model.display().to_string(), &findings);
+            grouped(&mut text, &findings);
+            output::print(text.as_bytes())?;
+        }
+        Ok(Outcome::DoesNotHold)
+    }
+}
+
+fn outcome(broken: bool) -> Outcome {
+    if broken { Outcome::DoesNotHold } else { Outcome::Done }
+}
+
+fn count(findings: &[Finding], severity: Severity) -> String {
+    let n = findings.iter().filter(|f| f.severity == severity).count();
+    format!("{n} {}{}", severity.name(), if n == 1 { "" } else { "s" })
+}
+
+fn head(name: &str, findings: &[Finding]) -> String {
+    if findings.is_empty() {
+        return format!("{name}: nothing to remark\n");
+    }
+    let counts = [Severity::Error, Severity::Warning, Severity::Note];
+    format!("{name}: {}\n", counts.map(|severity| count(findings, severity)).join(", "))
+}
+
+/// Findings under the rule that made them, and advice that several share said once.
+fn grouped(text: &mut String, findings: &[Finding]) {
+    let mut rules: Vec<(Severity, &str)> = vec![];
+    for finding in findings {
+        let rule = (finding.severity, finding.code);
+        if !rules.contains(&rule) {
+            rules.push(rule);
+        }
+    }
+    for (severity, code) in rules {
+        let _ = writeln!(text, "\n{} {code}", severity.name());
+        let mut own: Vec<&Finding> =
+            findings.iter().filter(|f| (f.severity, f.code) == (severity, code)).collect();
+        own.sort_by_key(|f| own_order(findings, &f.help));
+        for same in own.chunk_by(|a, b| a.help == b.help) {
+            // A list of thirty alike is read by nobody.
+            let shown = if same.len() > MOST_ALIKE + 1 { MOST_ALIKE } else { same.len() };
+            for finding in &same[..shown] {
+                let _ = writeln!(text, "  {}", finding.message);
+            }
+            if shown < same.len() {
+                let _ = writeln!(text, "  and {} more (--json lists all)", same.len() - shown);
+            }
+            if !same[0].help.is_empty() {
+                let _ = writeln!(text, "    -> {}", same[0].help);
+            }
+        }
+    }
+}
+
+/// How many findings of one kind are written out.
+const MOST_ALIKE: usize = 8;
+
+/// Where a help was first given, so that findings which share it stand together.
+fn own_order(findings: &[Finding], help: &str) -> Option<usize> {
+    findings.iter().position(|f| f.help == help)
+}
+
+fn finding_json(finding: &Finding) -> Value {
+    json!({
+        "severity": finding.severity.name(),
+        "code": finding.code,
+        "message": finding.message,
+        "subjects": finding.subjects,
+        "help": finding.help,
+    })
+}
+
+fn motion_json(model: &Model, motion: &MotionCheck) -> Value {
+    let keys: Vec<String> = model.coordinate_ids().map(|id| model.coordinate_key(id)).collect();
+    let key = |id: condyle::CoordinateId| &keys[id.index()];
+    let mut outside = vec![None; keys.len()];
+    for o in &motion.outside {
+        outside[o.coordinate.index()] = Some(o);
+    }
+    let outside = |id: condyle::CoordinateId| outside[id.index()];
+    let violation = |v: &lint::motion::Violation| {
+        json!({
+            "coordinate": key(v.coordinate),
+            "frame": v.frame,
+            "time": v.time,
+            "value": v.value,
+            "limit": v.limit,
+            "by": v.by,
+            "nearest": v.nearest,
+            "enforced": outside(v.coordinate).is_some_and(|o| o.enforced),
+            "source": outside(v.coordinate).map(|o| &o.source),
+        })
+    };
+    json!({
+        "frames": motion.frames,
+        "violations": motion.violations.iter().map(violation).collect::<Vec<_>>(),
+        "coordinates": motion.outside.iter().map(|o| json!({
+            "coordinate": key(o.coordinate),
+            "frames": o.frames,
+            "runs": o.runs,
+            "worst": violation(&o.worst),
+        })).collect::<Vec<_>>(),
+        "coupled": motion.disagreements.iter().map(|d| json!({
+            "coordinate": key(d.coordinate),
+            "frames": d.frames,
+            "frame": d.frame,
+            "time": d.time,
+            "value": d.value,
+            "expected": d.expected,
+        })).collect::<Vec<_>>(),
+        "loops": motion.open_loops.iter().map(|o| json!({
+            "name": o.name,
+            "frames": o.frames,
+            "frame": o.frame,
+            "time": o.time,
+            "metres": o.metres,
+            "radians": o.radians,
+        })).collect::<Vec<_>>(),
+        "jumps": motion.jumps.iter().map(|j| json!({
+            "coordinate": key(j.coordinate),
+            "frame": j.frame,
+            "time": j.time,
+            "by": j.by,
+            "wrap": j.wrap,
+        })).collect::<Vec<_>>(),
+        "missing": motion.missing.iter().map(|&id| key(id)).collect::<Vec<_>>(),
+        "unknown": motion.unknown,
+        "blank": motion.blank,
+    })
+}
+
+fn motion_text(text: &mut String, name: &str, model: &Model, motion: &MotionCheck) {
+    let _ = writeln!(text, "{name}: {} frames", motion.frames);
+    if motion.findings.is_empty() {
+        text.push_str("  every frame holds\n");
+    }
+    for enforced in [true, false] {
+        let own: Vec<_> = motion.outside.iter().filter(|o| o.enforced == enforced).collect();
+        if own.is_empty() {
+            continue;
+        }
+        let (severity, what) =
+            if enforced { ("error", "enforced") } else { ("warning", "declared, not enforced") };
+        let _ = writeln!(text, "\n{severity} motion/outside-range: limits that are {what}");
+        let title =
+            ["coordinate", "frames", "in", "worst at", "time", "value", "nearest", "beyond"];
+        let mut rows = vec![title.map(str::to_owned).to_vec()];
+        rows.extend(own.iter().map(|o| {
+            let kind = model.coordinate(o.coordinate).kind;
+            let runs: Vec<String> = o.runs.iter().take(3).map(|run| shown_run(*run)).collect();
+            let more = o.runs.len() - runs.len();
+            let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+            vec![
+                model.coordinate_key(o.coordinate),
+                o.frames.to_string(),
+                format!("{}{more}", runs.join(", ")),
+                o.worst.frame.to_string(),
+                format!("{:.3} s", o.worst.time),
+                amount(kind, o.worst.value),
+                amount(kind, o.worst.nearest),
+                amount(kind, o.worst.by),
+            ]
+        }));
+        text.push_str(&columns(&rows));
+        let mut sources: Vec<&str> = own.iter().map(|o| o.source.as_str()).collect();
+        sources.sort_unstable();
+        sources.dedup();
+        let _ = writeln!(text, "    -> {}", sources.join("; "));
+    }
+    let rest: Vec<Finding> =
+        motion.findings.iter().filter(|f| f.code != "motion/outside-range").cloned().collect();
+    grouped(text, &rest);
+}
+
+fn shown_run([first, last]: [usize; 2]) -> String {
+    if first == last { format!("f{first}") } else { format!("f{first}-{last}") }
+}
+
+/// A value with its unit.
+fn amount(kind: CoordinateKind, value: f64) -> String {
+    match kind {
+        CoordinateKind::Rotation | CoordinateKind::Orientation => {
+            format!("{:.2}°", value.to_degrees())
+        }
+        CoordinateKind::Translation => format!("{:.2} mm", 1e3 * value),
+        CoordinateKind::Other => format!("{value:.4}"),
+    }
+}

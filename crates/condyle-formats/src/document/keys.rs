@@ -1,0 +1,93 @@
+//! The words of a model document: every key that each table takes.
+
+/// Keys at the top of a document.
+pub(super) const TOP: &[&str] = &[
+    "condyle",
+    "kind",
+    "name",
+    "up",
+    "angles",
+    "include",
+    "constants",
+    "mirror",
+    "segment",
+    "joint",
+    "joint_set",
+    "marker",
+    "closure",
+];
+/// What a document of this format may be.
+pub(super) const KINDS: &[&str] = &["model", "limit", "law", "recipe", "setup", "names"];
+pub(super) const MIRROR: &[&str] = &["plane", "from", "to"];
+pub(super) const SEGMENT: &[&str] = &[
+    "parent",
+    "at",
+    "turn",
+    "order",
+    "matrix",
+    "joint_at",
+    "joint_turn",
+    "joint_order",
+    "joint_matrix",
+];
+pub(super) const JOINT: &[&str] =
+    &["segment", "type", "axis", "axes", "order", "coordinates", "coordinate"];
+pub(super) const JOINT_TYPES: &[&str] =
+    &["hinge", "universal", "ball", "euler", "prismatic", "planar", "free", "weld"];
+pub(super) const JOINT_SET: &[&str] = &["coordinate", "component", "output"];
+pub(super) const COORDINATE: &[&str] =
+    &["kind", "default", "range", "enforced", "locked", "unit", "source", "follows"];
+pub(super) const MARKER: &[&str] = &["segment", "at"];
+pub(super) const CLOSURE: &[&str] = &["points", "frames", "distance", "coupling"];
+pub(super) const FRAME: &[&str] = &["segment", "at", "turn", "order", "matrix"];
+pub(super) const CENTRE: &[&str] = &["to", "at"];
+pub(super) const COUPLING: &[&str] = &["follower", "driver", "function"];
+pub(super) const FUNCTION: &[&str] =
+    &["constant", "linear", "polynomial", "spline", "lines", "factor"];
+pub(super) const SEVERAL: &[&str] = &["slopes", "intercept", "dimension", "order", "coefficients"];
+
+/// The component kinds with their keys.
+pub(super) const COMPONENTS: &[(&str, &[&str])] = &[
+    ("map", &["input", "function", "functions", "in", "out"]),
+    ("combine", &["inputs", "function"]),
+    ("depend", &["passive", "driver", "lower", "upper"]),
+    ("rotate", &["angle", "axis"]),
+    ("pivot", &["angle", "axis", "centres", "path"]),
+    ("translate", &["distance", "axis"]),
+    ("ball", &["orientation"]),
+    ("place", &["at", "turn", "order", "matrix"]),
+    ("ellipsoid", &["about_x", "about_y", "about_z", "radii"]),
+    ("constant_curvature", &["about_x", "about_z", "about_y", "neutral", "length"]),
+    ("compensate", &["segment", "ancestors", "weight"]),
+    ("product", &["factors"]),
+];
+
+/// Every table of a model document with the keys that it takes, for manuals and schemas.
+///
+/// The components stand under their kinds, such as `component.rotate`.
+#[must_use]
+pub fn keys() -> Vec<(String, Vec<&'static str>)> {
+    let plain: [(&str, &[&'static str]); 14] = [
+        ("model", TOP),
+        ("mirror", MIRROR),
+        ("segment", SEGMENT),
+        ("joint", JOINT),
+        ("joint_set", JOINT_SET),
+        ("coordinate", COORDINATE),
+        ("marker", MARKER),
+        ("closure", CLOSURE),
+        ("point", MARKER),
+        ("frame", FRAME),
+        ("centre", CENTRE),
+        ("coupling", COUPLING),
+        ("function", FUNCTION),
+        ("function_of_several", SEVERAL),
+    ];
+    let components = COMPONENTS.iter().map(|(kind, keys)| (format!("component.{kind}"), *keys));
+    plain
+        .into_iter()
+        .map(|(table, keys)| (table.to_owned(), keys))
+        .chain(components)
+        .map(|(table, keys)| (table, keys.to_vec()))
+        .collect()
+}

@@ -1,0 +1,303 @@
+//! One side of a body made into the other: D = diag(1, 1, -1) for a plane z, and so on.
+//!
+//! Coordinates keep their values: where both sides have the same ones, the pose of the made side is
+//! D·T·D of the written one. A point p becomes D·p, a frame D·T·D, the axis of a slide D·a, the axis
+//! of a turn -D·a (it is a pseudovector). Only an orientation cannot keep its value, since it *is* a
+//! rotation: (v, w) on one side is (-D·v, w) on the other.
+//!
+//! Components whose formula prefers an axis are made of the same component and others:
+//!
+//! - an ellipsoid mirrored at x or y takes two of its angles negated; at z, where its own pole is
+//!   reversed, D·Rx(a)·Ry(b)·Rz(c)·D = Rx(π-a)·Ry(b)·Rz(-c)·Rx(π) and the pole comes out right;
+//! - a column takes the negated angles; its rest direction y cannot be mirrored at y.
+
+use super::draft::{
+    ClosureDraft, ComponentDraft, ConditionDraft, CoordinateDraft, Draft, Holder, Law, OutputDraft,
+    SegmentDraft,
+};
+use super::source::{Name, Sources};
+use condyle_math::function::{Function, SimmSpline};
+use condyle_math::{Affine, Mat3, Vec3};
+use condyle_model::CoordinateKind;
+use condyle_model::component::Centre;
+use std::collections::HashSet;
+use std::f64::consts::PI;
+
+pub(super) struct Mirror {
+    /// The axis that is reversed.
+    pub(super) axis: usize,
+    /// How names end that are mirrored, and what takes the place of that end.
+    pub(super) from: String,
+    pub(super) to: String,
+}
+
+impl Mirror {
+    /// Adds what is not written.
+    pub(super) fn complete(&self, draft: &mut Draft, sources: &mut Sources) {
+        let written = |names: &mut dyn Iterator<Item = &Name>| -> HashSet<String> {
+            names.map(|n| n.text.clone()).collect()
+        };
+        let sets = written(&mut draft.sets.iter());
+        let segments = written(&mut draft.segments.iter().map(|s| &s.name));
+        let markers = written(&mut draft.markers.iter().map(|m| &m.name));
+        let closures = written(&mut draft.closures.iter().map(|c| &c.name));
+        let news = |known: &HashSet<String>, name: &str| {
+            self.other(name).is_some_and(|other| !known.contains(&other))
+        };
+
+        let made: Vec<SegmentDraft> = draft
+            .segments
+            .iter()
+            .filter(|s| news(&segments, &s.name.text))
+            .map(|s| SegmentDraft {
+                name: self.renamed(&s.name),
+                parent: s.parent.as_ref().map(|p| self.renamed(p)),
+                in_parent: self.frame(s.in_parent),
+                in_itself: self.frame(s.in_itself),
+            })
+            .collect();
+        draft.segments.extend(made);
+
+        let made: Vec<CoordinateDraft> = draft
+            .coordinates
+            .iter()
+            .filter(|c| news(&sets, &c.set))
+            .map(|c| {
+                let mut default = c.default;
+                if c.kind == CoordinateKind::Orientation {
+                    let [x, y, z, w] = c.default;
+                    let v = self.turning(Vec3::new(x, y, z));
+                    default = [v.x, v.y, v.z, w];
+                }
+                CoordinateDraft {
+                    set: self.name(&c.set),
+                    name: self.renamed(&c.name),
+                    default,
+                    follows: c.follows.as_ref().map(|p| self.port(p)),
+                    ..c.clone()
+                }
+            })
+            .collect();
+        draft.coordinates.extend(made);
+
+        let mut made = vec![];
+        for component in draft.components.iter().filter(|c| news(&sets, &c.set)) {
+            self.component(component, sources, &mut made);
+        }
+        draft.components.extend(made);
+
+        let made: Vec<OutputDraft> = draft
+            .outputs
+            .iter()
+            .filter(|o| news(&sets, &o.set))
+            .map(|o| OutputDraft {
+                set: self.name(&o.set),
+                segment: self.renamed(&o.segment),
+                ports: o.ports.iter().map(|p| self.port(p)).collect(),
+                listed: o.listed,
+            })
+            .collect();
+        draft.outputs.extend(made);
+
+        let made: Vec<Name> =
+            draft.sets.iter().filter(|s| news(&sets, &s.text)).map(|s| self.renamed(s)).collect();
+        draft.sets.extend(made);
+
+        let made: Vec<_> = draft
+            .markers
+            .iter()
+            .filter(|m| news(&markers, &m.name.text))
+            .map(|m| super::draft::MarkerDraft {
+                name: self.renamed(&m.name),
+                segment: self.holder(&m.segment),
+                point: self.point(m.point),
+            })
+            .collect();
+        draft.markers.extend(made);
+
+        let made: Vec<_> = draft
+            .closures
+            .iter()
+            .filter(|c| news(&closures, &c.name.text))
+            .map(|c| ClosureDraft {
+                name: self.renamed(&c.name),
+                condition: self.condition(&c.condition),
+            })
+            .collect();
+        draft.closures.extend(made);
+    }
+
+    fn other(&self, name: &str) -> Option<String> {
+        name.strip_suffix(&self.from).map(|stem| format!("{stem}{}", self.to))
+    }
+
+    fn name(&self, name: &str) -> String {
+        self.other(name).unwrap_or_else(|| name.to_owned())
+    }
+
+    fn renamed(&self, name: &Name) -> Name {
+        Name { text: self.name(&name.text), spot: name.spot }
+    }
+
+    /// A name at a port: each of its parts.
+    fn port(&self, port: &Name) -> Name {
+        let parts: Vec<String> = port.text.split('.').map(|part| self.name(part)).collect();
+        Name { text: parts.join("."), spot: port.spot }
+    }
+
+    fn holder(&self, holder: &Holder) -> Holder {
+        holder.as_ref().map(|n| self.renamed(n))
+    }
+
+    fn point(&self, p: Vec3) -> Vec3 {
+        let mut p = p.to_array();
+        p[self.axis] = -p[self.axis];
+        Vec3::from(p)
+    }
+
+    fn turning(&self, axis: Vec3) -> Vec3 {
+        -self.point(axis)
+    }
+
+    fn frame(&self, frame: Affine) -> Affine {
+        // D·M·D changes the sign of what mixes the reversed axis with another.
+        let column =
+            |c: usize, v: Vec3| if c == self.axis { -self.point(v) } else { self.point(v) };
+        let m = frame.linear;
+        let linear = Mat3::from_columns(column(0, m.x), column(1, m.y), column(2, m.z));
+        Affine::new(linear, self.point(frame.translation))
+    }
+
+    fn centre(&self, centre: &Centre) -> Centre {
+        match centre {
+            Centre::Intervals(list) => {
+                Centre::Intervals(list.iter().map(|(to, at)| (*to, self.point(*at))).collect())
+            }
+            Centre::Path(splines) => {
+                let mut splines = splines.clone();
+                let (x, y) = splines[self.axis].knots().map(|(x, y)| (x, -y)).unzip();
+                if let Ok(reversed) = SimmSpline::new(x, y) {
+                    splines[self.axis] = reversed;
+                }
+                Centre::Path(splines)
+            }
+        }
+    }
+
+    fn condition(&self, condition: &ConditionDraft) -> ConditionDraft {
+        let points = |at: &[(Holder, Vec3); 2]| {
+            at.each_ref().map(|(holder, p)| (self.holder(holder), self.point(*p)))
+        };
+        match condition {
+            ConditionDraft::Points(at) => ConditionDraft::Points(points(at)),
+            ConditionDraft::Distance(at, d) => ConditionDraft::Distance(points(at), *d),
+            ConditionDraft::Frames(at) => ConditionDraft::Frames(
+                at.each_ref().map(|(holder, f)| (self.holder(holder), self.frame(*f))),
+            ),
+            ConditionDraft::Coupling { follower, driver, function } => ConditionDraft::Coupling {
+                follower: self.port(follower),
+                driver: self.port(driver),
+                function: function.clone(),
+            },
+        }
+    }
+
+    fn component(
+        &self,
+        component: &ComponentDraft,
+        sources: &mut Sources,
+        made: &mut Vec<ComponentDraft>,
+    ) {
+        let set = self.name(&component.set);
+        let name = self.renamed(&component.name);
+        let mut ports: Vec<Name> = component.ports.iter().map(|p| self.port(p)).collect();
+        let part =
+            |what: &str| Name { text: format!("{}_mirror_{what}", name.text), spot: name.spot };
+        // The argument at one port by way of slope·x + intercept.
+        let mut through = |port: &mut Name, what: &str, slope: f64, intercept: f64| {
+            let between = part(what);
+            made.push(ComponentDraft {
+                set: set.clone(),
+                name: between.clone(),
+                law: Law::Map(vec![Function::linear(slope, intercept)]),
+                ports: vec![port.clone()],
+            });
+            *port = Name { text: escaped(&between.text), spot: between.spot };
+        };
+        let law = match &component.law {
+            Law::Rotate(axis) => Law::Rotate(self.turning(*axis)),
+            Law::Pivot(axis, centre) => Law::Pivot(self.turning(*axis), self.centre(centre)),
+            Law::Compensate { segment, ancestors, weight } => Law::Compensate {
+                segment: self.renamed(segment),
+                ancestors: ancestors.iter().map(|a| self.renamed(a)).collect(),
+                weight: *weight,
+            },
+            Law::Translate(axis) => Law::Translate(self.point(*axis)),
+            Law::Place(frame) => Law::Place(self.frame(*frame)),
+            Law::Ellipsoid(radii) if ports.len() == 3 => {
+                // Slopes and intercepts of the three angles.
+                let [x, y, z] = match self.axis {
+                    0 => [(1.0, 0.0), (-1.0, 0.0), (-1.0, 0.0)],
+                    1 => [(-1.0, 0.0), (1.0, 0.0), (-1.0, 0.0)],
+                    _ => [(-1.0, PI), (1.0, 0.0), (-1.0, 0.0)],
+                };
+                let whats = ["about_x", "about_y", "about_z"];
+                for ((port, what), (slope, intercept)) in ports.iter_mut().zip(whats).zip([x, y, z])
+                {
+                    if (slope, intercept) != (1.0, 0.0) {
+                        through(port, what, slope, intercept);
+                    }
+                }
+                if self.axis == 2 {
+                    let (surface, half) = (part("surface"), part("half_turn"));
+                    let law = Law::Ellipsoid(*radii);
+                    let set = set.clone();
+                    let name = surface.clone();
+                    made.push(ComponentDraft { set: set.clone(), name, law, ports });
+                    let turn =
+                        Affine::from_rotation(Mat3::from_columns(Vec3::X, -Vec3::Y, -Vec3::Z));
+                    let law = Law::Place(turn);
+                    let name = half.clone();
+                    made.push(ComponentDraft { set, name, law, ports: vec![] });
+                    ports = [surface, half]
+                        .map(|n| Name { text: escaped(&n.text), spot: n.spot })
+                        .to_vec();
+                    Law::Product
+                } else {
+                    Law::Ellipsoid(*radii)
+                }
+            }
+            Law::ConstantCurvature { neutral, length } if ports.len() == 3 => {
+                // In the order x, z, y; a turn about an axis keeps its sign if that axis is reversed.
+                let signs = match self.axis {
+                    0 => [1.0, -1.0, -1.0],
+                    2 => [-1.0, 1.0, -1.0],
+                    _ => {
+                        let message = format!(
+                            "the column `{}` cannot be mirrored at y: it stands along y",
+                            component.name.text
+                        );
+                        let help = "write both sides, or turn its frame";
+                        sources.error(component.name.spot, "model/mirror", message, help);
+                        [1.0; 3]
+                    }
+                };
+                let whats = ["about_x", "about_z", "about_y"];
+                for ((port, what), sign) in ports.iter_mut().zip(whats).zip(signs) {
+                    if sign < 0.0 {
+                        through(port, what, sign, 0.0);
+                    }
+                }
+                let neutral = std::array::from_fn(|i| signs[i] * neutral[i]);
+                Law::ConstantCurvature { neutral, length: *length }
+            }
+            other => other.clone(),
+        };
+        made.push(ComponentDraft { set, name, law, ports });
+    }
+}
+
+/// A name as it stands at a port, where a dot separates names.
+pub(super) fn escaped(name: &str) -> String {
+    name.replace('\\', "\\\\").replace('.', "\\.")
+}

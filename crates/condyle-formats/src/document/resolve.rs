@@ -1,0 +1,433 @@
+//! Names to positions, and the draft to a checked model.
+
+use super::draft::{ConditionDraft, Draft, Holder, Law};
+use super::source::{Name, Sources, Spot};
+use crate::diagnostic::{Diagnostic, nearest};
+use condyle_math::{Affine, Vec3};
+use condyle_model::component::{Component, Place, PortType, Product};
+use condyle_model::model::{ComponentId, Condition, JointSetId};
+use condyle_model::{
+    Closure, CoordinateId, CoordinateKind, Finding, Model, ModelBuilder, SegmentId, Severity,
+    Source,
+};
+use std::collections::HashMap;
+
+/// The most numbers that a compiled model may keep of its products, and of its derivatives.
+const MOST_FACTORS: u64 = 1 << 20;
+const MOST_DERIVATIVES: u64 = 1 << 24;
+
+/// What a name in a joint set means.
+#[derive(Clone, Copy)]
+struct Meaning {
+    source: Source,
+    port: PortType,
+    outputs: usize,
+}
+
+/// Builds the model; errors go to `sources`.
+pub(super) fn build(draft: Draft, sources: &mut Sources) -> Option<Model> {
+    let mut resolver = Resolver {
+        sources,
+        builder: ModelBuilder::new(draft.name.as_deref().unwrap_or("model")),
+        segments: HashMap::new(),
+        sets: HashMap::new(),
+        names: HashMap::new(),
+        places: vec![],
+    };
+    resolver.all(draft);
+    let Resolver { sources, builder, places, .. } = resolver;
+    if sources.failed() {
+        return None;
+    }
+    match builder.build_with_findings() {
+        Ok((model, findings)) => {
+            for finding in findings.into_iter().filter(|f| f.code != "model/axis-length").take(100)
+            {
+                let said = located(sources, &places, finding);
+                sources.warn(said);
+            }
+            let whole = Spot::default();
+            if factors(&model) > MOST_FACTORS {
+                let message = "products of products make too long a chain";
+                let help = format!("at most {MOST_FACTORS} factors are multiplied");
+                sources.error(whole, "model/size", message, help);
+                return None;
+            }
+            let parts =
+                model.segments().len() + model.components().len() + model.coordinates().len();
+            if (parts as u64).saturating_mul(model.tangent_len() as u64) > MOST_DERIVATIVES {
+                let message =
+                    format!("{parts} parts and {} coordinates", model.coordinates().len());
+                let help = "this is more than can be differentiated; use several models";
+                sources.error(whole, "model/size", message, help);
+                return None;
+            }
+            Some(model)
+        }
+        Err(findings) => {
+            let errors = findings.into_iter().filter(|f| f.severity == Severity::Error);
+            for finding in errors.take(100) {
+                let said = located(sources, &places, finding);
+                sources.push(said);
+            }
+            None
+        }
+    }
+}
+
+/// A finding at the table that it is about.
+fn located(sources: &Sources, places: &[(String, Spot)], finding: Finding) -> Diagnostic {
+    let circle = finding.message.split_once(": ").map(|(_, names)| names);
+    let first = circle.and_then(|names| names.split(" -> ").next()).unwrap_or_default();
+    let lower = finding.message.to_lowercase();
+    // Phrases with a name in quotes are parts of sentences, bare names parts of circles.
+    let found = places.iter().find(|(phrase, _)| match phrase.contains('`') {
+        true => lower.contains(&phrase.to_lowercase()),
+        false => !first.is_empty() && phrase == first,
+    });
+    let spot = found.map_or(Spot::default(), |(_, spot)| *spot);
+    sources.said(spot, finding.code, finding.message).with_help(finding.help)
+}
+
+/// The length of all chains of factors that segments are moved by.
+fn factors(model: &Model) -> u64 {
+    let count = model.components().len();
+    let index = |source: Source| match source {
+        Source::Output(id, _) => Some(id.index()),
+        Source::Coordinate(_) => None,
+    };
+    let parts: Vec<Vec<usize>> = model
+        .components()
+        .iter()
+        .map(|c| match &c.component {
+            Component::Product(p) => p.factors.iter().filter_map(|s| index(*s)).collect(),
+            _ => vec![],
+        })
+        .collect();
+    let mut size: Vec<Option<u64>> = vec![None; count];
+    for start in 0..count {
+        let mut stack = vec![start];
+        while let Some(&top) = stack.last() {
+            if size[top].is_some() {
+                stack.pop();
+                continue;
+            }
+            let open: Vec<usize> =
+                parts[top].iter().copied().filter(|p| size[*p].is_none()).collect();
+            if open.is_empty() {
+                let sum = parts[top].iter().filter_map(|p| size[*p]);
+                size[top] = Some(sum.fold(1u64, u64::saturating_add));
+                stack.pop();
+            } else {
+                stack.extend(open);
+            }
+        }
+    }
+    let whole = |motion| index(motion).and_then(|i: usize| size[i]).unwrap_or(0);
+    let moved = model.segments().iter().filter_map(|s| s.motion).map(whole);
+    moved.chain(size.iter().map(|s| s.unwrap_or(0))).fold(0u64, u64::saturating_add)
+}
+
+struct Resolver<'s> {
+    sources: &'s mut Sources,
+    builder: ModelBuilder,
+    segments: HashMap<String, SegmentId>,
+    sets: HashMap<String, JointSetId>,
+    names: HashMap<(String, String), Meaning>,
+    /// What findings call things, and where those stand.
+    places: Vec<(String, Spot)>,
+}
+
+impl Resolver<'_> {
+    fn all(&mut self, draft: Draft) {
+        self.builder.up(draft.up);
+        for s in &draft.segments {
+            let id = self.builder.segment(&s.name.text, None);
+            self.builder.place_joint_frames(id, s.in_parent, s.in_itself);
+            self.places.push((format!("segment `{}`", s.name.text), s.name.spot));
+            self.places.push((s.name.text.clone(), s.name.spot));
+            if self.segments.insert(s.name.text.clone(), id).is_some() {
+                self.twice("segment", &s.name);
+            }
+        }
+        for s in &draft.segments {
+            if let Some(parent) = &s.parent {
+                let id = self.segments[&s.name.text];
+                let parent = self.segment(parent);
+                self.builder.set_parent(id, parent);
+            }
+        }
+        for set in &draft.sets {
+            let id = self.builder.joint_set(&set.text);
+            if self.sets.insert(set.text.clone(), id).is_some() {
+                self.twice("joint set", set);
+            }
+        }
+        let mut coordinates = vec![];
+        for c in &draft.coordinates {
+            let Some(&set) = self.sets.get(&c.set) else { continue };
+            let id = self.builder.coordinate(set, &c.name.text, c.kind);
+            let made = self.builder.coordinate_mut(id);
+            (made.default, made.range, made.locked) = (c.default, c.range, c.locked);
+            made.source.clone_from(&c.source);
+            let key = format!("{}/{}", c.set, c.name.text);
+            for name in [&c.name.text, &key] {
+                self.places.push((format!("coordinate `{name}`"), c.name.spot));
+                self.places.push((name.clone(), c.name.spot));
+            }
+            let port = match c.kind {
+                CoordinateKind::Orientation => PortType::Orientation,
+                _ => PortType::Scalar,
+            };
+            let meaning = Meaning { source: id.into(), port, outputs: 1 };
+            self.mean(&c.set, &c.name, meaning);
+            coordinates.push((id, c.set.clone(), c.follows.clone()));
+        }
+        // Made first and connected afterwards: a component may read one that stands below it.
+        let mut components: Vec<(ComponentId, String, Name, Law, Vec<Name>)> = vec![];
+        for c in draft.components {
+            let Some(&set) = self.sets.get(&c.set) else { continue };
+            let stand_in = Component::Place(Place { child_in_parent: Affine::IDENTITY });
+            let source = self.builder.component(set, &c.name.text, stand_in);
+            let Source::Output(id, _) = source else { continue };
+            let (port, outputs) = c.law.outputs();
+            self.mean(&c.set, &c.name, Meaning { source, port, outputs });
+            self.places.push((format!("component `{}` ", c.name.text), c.name.spot));
+            self.places.push((format!("{}.{}", c.set, c.name.text), c.name.spot));
+            components.push((id, c.set, c.name, c.law, c.ports));
+        }
+        for (id, set, follows) in coordinates {
+            if let Some(port) = follows
+                && let Some(source) = self.port(&set, &port, PortType::Scalar)
+            {
+                self.builder.follow(id, source);
+            }
+        }
+        for (id, set, name, law, ports) in components {
+            let wanted = law.inputs();
+            if let Law::Combine(function) = &law
+                && function.arity() != ports.len()
+            {
+                let message = format!(
+                    "component `{}` has {} inputs but its function takes {}",
+                    name.text,
+                    ports.len(),
+                    function.arity()
+                );
+                let help = "connect as many inputs as the function has arguments";
+                self.sources.error(name.spot, "model/arity", message, help);
+                continue;
+            }
+            let connected: Vec<Option<Source>> =
+                ports.iter().map(|p| self.port(&set, p, wanted)).collect();
+            let connected: Option<Vec<Source>> = connected.into_iter().collect();
+            let Some(connected) = connected else { continue };
+            let before = self.sources.count();
+            match law.build(connected, &mut |name| self.segment(name)) {
+                Ok(component) => *self.builder.component_mut(id) = component,
+                // Unknown segments were named already.
+                Err(_) if self.sources.count() > before => {}
+                Err(why) => {
+                    let message = format!("component `{}` cannot be made: {why}", name.text);
+                    self.sources.error(name.spot, "model/component", message, "give other numbers");
+                }
+            }
+        }
+        self.outputs(&draft.outputs);
+        for m in &draft.markers {
+            let segment = self.holder(&m.segment);
+            self.places.push((format!("`{}`", m.name.text), m.name.spot));
+            self.builder.marker(&m.name.text, segment, m.point);
+        }
+        for c in &draft.closures {
+            if let Some(condition) = self.condition(&c.condition) {
+                self.builder.closure(Closure { name: c.name.text.clone(), condition });
+            }
+        }
+    }
+
+    fn outputs(&mut self, outputs: &[super::draft::OutputDraft]) {
+        let mut moved: HashMap<String, String> = HashMap::new();
+        for o in outputs {
+            let Some(&set) = self.sets.get(&o.set) else { continue };
+            let segment = self.segment(&o.segment);
+            if let Some(other) = moved.insert(o.segment.text.clone(), o.set.clone()) {
+                let message = format!(
+                    "segment `{}` is moved by `{other}` and by `{}`",
+                    o.segment.text, o.set
+                );
+                let help = "let one joint set move it";
+                self.sources.error(o.segment.spot, "model/duplicate", message, help);
+            }
+            let sources: Vec<Option<Source>> =
+                o.ports.iter().map(|p| self.port(&o.set, p, PortType::Transform)).collect();
+            let Some(sources) = sources.into_iter().collect::<Option<Vec<Source>>>() else {
+                continue;
+            };
+            let motion = match sources[..] {
+                [one] => one,
+                _ if !o.listed => continue,
+                _ => {
+                    let mut name = format!("motion_of_{}", o.segment.text);
+                    while self.names.contains_key(&(o.set.clone(), name.clone())) {
+                        name.push('_');
+                    }
+                    let product = Component::Product(Product { factors: sources });
+                    let source = self.builder.component(set, &name, product);
+                    let meaning = Meaning { source, port: PortType::Transform, outputs: 1 };
+                    self.mean(&o.set, &Name { text: name, spot: o.segment.spot }, meaning);
+                    source
+                }
+            };
+            if let Some(segment) = segment {
+                self.builder.output(set, segment, motion);
+            }
+        }
+    }
+
+    fn twice(&mut self, what: &str, name: &Name) {
+        let message = format!("a second {what} is named `{}`", name.text);
+        let help = format!("give each {what} a name of its own");
+        self.sources.error(name.spot, "model/duplicate", message, help);
+    }
+
+    fn mean(&mut self, set: &str, name: &Name, meaning: Meaning) {
+        if self.names.insert((set.to_owned(), name.text.clone()), meaning).is_some() {
+            let message = format!("`{}` is named twice in joint set `{set}`", name.text);
+            let help = "coordinates and components of a joint set share their names: rename one";
+            self.sources.error(name.spot, "model/duplicate", message, help);
+        }
+    }
+
+    fn segment(&mut self, name: &Name) -> Option<SegmentId> {
+        if let Some(id) = self.segments.get(&name.text) {
+            return Some(*id);
+        }
+        let help = match nearest(&name.text, self.segments.keys().map(String::as_str)) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "name a segment of this model; leave it away for the world".to_owned(),
+        };
+        let message = format!("unknown segment `{}`", name.text);
+        self.sources.error(name.spot, "model/unknown-name", message, help);
+        None
+    }
+
+    fn holder(&mut self, holder: &Holder) -> Option<SegmentId> {
+        holder.as_ref().and_then(|name| self.segment(name))
+    }
+
+    fn condition(&mut self, condition: &ConditionDraft) -> Option<Condition> {
+        let mut points = |at: &[(Holder, Vec3); 2]| -> [(Option<SegmentId>, Vec3); 2] {
+            at.each_ref().map(|(holder, point)| (self.holder(holder), *point))
+        };
+        Some(match condition {
+            ConditionDraft::Points(at) => Condition::Points { at: points(at) },
+            ConditionDraft::Distance(at, distance) => {
+                Condition::Distance { at: points(at), distance: *distance }
+            }
+            ConditionDraft::Frames(at) => Condition::Frames {
+                at: at.each_ref().map(|(holder, frame)| (self.holder(holder), *frame)),
+            },
+            ConditionDraft::Coupling { follower, driver, function } => {
+                let follower = self.coordinate(follower);
+                let driver = self.coordinate(driver);
+                let function = function.clone();
+                Condition::Coupling { follower: follower?, driver: driver?, function }
+            }
+        })
+    }
+
+    fn coordinate(&mut self, name: &Name) -> Option<CoordinateId> {
+        match self.port("", name, PortType::Scalar)? {
+            Source::Coordinate(id) => Some(id),
+            Source::Output(..) => {
+                let message = format!("`{}` is a component", name.text);
+                self.sources.error(name.spot, "model/port-type", message, "name a coordinate");
+                None
+            }
+        }
+    }
+
+    /// What a port names: `name` in its own set, `set.name`, and `.N` behind for one of several
+    /// outputs, counted from 1.
+    fn port(&mut self, own: &str, port: &Name, wanted: PortType) -> Option<Source> {
+        let parts = parts(&port.text);
+        let find =
+            |set: &str, name: &str| self.names.get(&(set.to_owned(), name.to_owned())).copied();
+        let number = |part: &str| part.parse::<usize>().ok();
+        let found = match &parts[..] {
+            [name] => find(own, name).map(|m| (m, 1)),
+            [first, second] => find(first, second).map(|m| (m, 1)).or_else(|| {
+                find(own, first).and_then(|m| number(second).map(|output| (m, output)))
+            }),
+            [set, name, output] => {
+                find(set, name).and_then(|m| number(output).map(|output| (m, output)))
+            }
+            _ => None,
+        };
+        let Some((meaning, output)) = found else {
+            self.unknown(own, port, &parts);
+            return None;
+        };
+        if output == 0 || output > meaning.outputs {
+            let message = format!("`{}` asks for an output that is not there", port.text);
+            let help = format!("its outputs are counted from 1 to {}", meaning.outputs);
+            self.sources.error(port.spot, "model/unknown-name", message, help);
+            return None;
+        }
+        if meaning.port != wanted {
+            let word = |port: PortType| format!("{port:?}").to_lowercase();
+            let message =
+                format!("`{}` is a {}, not a {}", port.text, word(meaning.port), word(wanted));
+            let help = match wanted {
+                PortType::Scalar => "name a coordinate that is one number, a map or a combine",
+                PortType::Orientation => "name a coordinate of kind \"orientation\"",
+                PortType::Transform => "name a component such as rotate, translate or product",
+            };
+            self.sources.error(port.spot, "model/port-type", message, help);
+            return None;
+        }
+        Some(match meaning.source {
+            Source::Output(id, _) => Source::Output(id, output as u32 - 1),
+            coordinate => coordinate,
+        })
+    }
+
+    fn unknown(&mut self, own: &str, port: &Name, parts: &[String]) {
+        let (set, name) = match parts {
+            [set, name, ..] if self.sets.contains_key(set) => (set.as_str(), name.as_str()),
+            [first, ..] => (own, first.as_str()),
+            [] => (own, ""),
+        };
+        let known = self.names.keys().filter(|(s, _)| s == set).map(|(_, n)| n.as_str());
+        let help = if let Some(near) = nearest(name, known) {
+            match set == own {
+                true => format!("did you mean `{near}`?"),
+                false => format!("did you mean `{set}.{near}`?"),
+            }
+        } else if let Some((other, _)) =
+            self.names.keys().filter(|(_, n)| n == name).min_by_key(|(s, _)| s.clone())
+        {
+            format!("did you mean `{other}.{name}`?")
+        } else {
+            "name a coordinate or component of this joint set, or `set.name` of another".to_owned()
+        };
+        let message = format!("unknown name `{}`", port.text);
+        self.sources.error(port.spot, "model/unknown-name", message, help);
+    }
+}
+
+/// The names of a port; a backslash takes the next letter as it is.
+fn parts(text: &str) -> Vec<String> {
+    let mut parts = vec![String::new()];
+    let mut letters = text.chars();
+    while let Some(letter) = letters.next() {
+        let here = parts.len() - 1;
+        match letter {
+            '.' => parts.push(String::new()),
+            '\\' => parts[here].extend(letters.next()),
+            _ => parts[here].push(letter),
+        }
+    }
+    parts
+}

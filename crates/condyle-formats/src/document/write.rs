@@ -1,0 +1,398 @@
+//! A model that never was text, written out in full.
+
+use super::mirror::escaped;
+use condyle_math::function::{Curve, Function, FunctionOfSeveral};
+use condyle_math::{Affine, EulerOrder, Mat3, Vec3};
+use condyle_model::component::{Centre, Component};
+use condyle_model::model::Condition;
+use condyle_model::{Coordinate, CoordinateKind, Model, Range, Segment, SegmentId, Source, UpAxis};
+use std::collections::{HashMap, HashSet};
+use std::fmt::Write;
+
+/// Writes a model as a document that reads back to the same model: same order, same numbers.
+///
+/// Components whose names clash with others of their joint set get a number behind.
+#[must_use]
+pub fn write(model: &Model) -> String {
+    let mut writer = Writer { model, out: String::new(), components: component_names(model) };
+    writer.all();
+    writer.out
+}
+
+struct Writer<'m> {
+    model: &'m Model,
+    out: String,
+    /// A name for each component, unique in its joint set beside the coordinates.
+    components: Vec<String>,
+}
+
+/// Adds lines to a text in memory, which cannot fail.
+macro_rules! line {
+    ($writer:expr, $($arg:tt)*) => {{ let _ = writeln!($writer.out, $($arg)*); }};
+}
+
+fn component_names(model: &Model) -> Vec<String> {
+    let mut taken: HashSet<(usize, String)> =
+        model.coordinates().iter().map(|c| (c.joint_set.index(), c.name.clone())).collect();
+    let mut last: HashMap<(usize, String), usize> = HashMap::new();
+    let mut names = vec![];
+    for component in model.components() {
+        let set = component.joint_set.index();
+        let mut name = component.name.clone();
+        let count = last.entry((set, name.clone())).or_insert(1);
+        while !taken.insert((set, name.clone())) {
+            *count += 1;
+            name = format!("{}_{count}", component.name);
+        }
+        names.push(name);
+    }
+    names
+}
+
+impl Writer<'_> {
+    fn all(&mut self) {
+        let model = self.model;
+        line!(self, "condyle = 1");
+        line!(self, "kind = \"model\"");
+        line!(self, "name = {}", text(model.name()));
+        if model.up() == UpAxis::Z {
+            line!(self, "up = \"z\"");
+        }
+        for segment in model.segments() {
+            self.segment(segment);
+        }
+        for set in model.joint_sets() {
+            line!(self, "\n[joint_set.{}]", key(&set.name));
+        }
+        for coordinate in model.coordinates() {
+            self.coordinate(coordinate);
+        }
+        for (index, named) in model.components().iter().enumerate() {
+            let set = key(&self.set(named.joint_set.index()));
+            let name = key(&self.components[index]);
+            let kind = named.component.kind();
+            line!(self, "\n[joint_set.{set}.component.{name}.{kind}]");
+            self.component(named.joint_set.index(), &named.component);
+        }
+        for (index, set) in model.joint_sets().iter().enumerate() {
+            let moved = model.segments().iter().filter_map(|segment| {
+                let motion = segment.motion?;
+                (segment.joint_set?.index() == index).then_some((segment, motion))
+            });
+            let moved: Vec<_> = moved.collect();
+            if !moved.is_empty() {
+                line!(self, "\n[joint_set.{}.output]", key(&set.name));
+            }
+            for (segment, motion) in moved {
+                let port = self.port(Some(index), motion);
+                line!(self, "{} = {port}", key(&segment.name));
+            }
+        }
+        for marker in model.markers() {
+            line!(self, "\n[marker.{}]", key(&marker.name));
+            if let Some(segment) = marker.segment {
+                line!(self, "segment = {}", text(&model.segment(segment).name));
+            }
+            line!(self, "at = {}", vector(marker.point));
+        }
+        self.closures();
+    }
+
+    fn set(&self, index: usize) -> String {
+        self.model.joint_sets()[index].name.clone()
+    }
+
+    fn segment(&mut self, segment: &Segment) {
+        line!(self, "\n[segment.{}]", key(&segment.name));
+        if let Some(parent) = segment.parent {
+            line!(self, "parent = {}", text(&self.model.segment(parent).name));
+        }
+        for part in frame(segment.joint_in_parent) {
+            line!(self, "{part}");
+        }
+        for part in frame(segment.joint_in_segment) {
+            line!(self, "joint_{part}");
+        }
+    }
+
+    fn coordinate(&mut self, c: &Coordinate) {
+        let set = self.set(c.joint_set.index());
+        line!(self, "\n[joint_set.{}.coordinate.{}]", key(&set), key(&c.name));
+        if c.kind != CoordinateKind::Rotation {
+            line!(self, "kind = \"{}\"", c.kind.name());
+        }
+        if c.kind == CoordinateKind::Orientation {
+            if c.default != [0.0, 0.0, 0.0, 1.0] {
+                line!(self, "default = {}", numbers(&c.default));
+            }
+        } else if c.default[0] != 0.0 {
+            line!(self, "default = {}", number(c.default[0]));
+        }
+        let Range { lower, upper, enforced } = c.range;
+        let held = lower.is_some() || upper.is_some();
+        if held {
+            let side = |v: Option<f64>| v.map_or("\"none\"".to_owned(), number);
+            line!(self, "range = [{}, {}]", side(lower), side(upper));
+        }
+        if enforced != held {
+            line!(self, "enforced = {enforced}");
+        }
+        if c.locked {
+            line!(self, "locked = true");
+        }
+        if let Some(source) = &c.source {
+            line!(self, "source = {}", text(source));
+        }
+        if let Some(leader) = c.follows {
+            let port = self.port(Some(c.joint_set.index()), leader);
+            line!(self, "follows = {port}");
+        }
+    }
+
+    /// A port as a text: by bare name in the set itself.
+    fn port(&self, own: Option<usize>, source: Source) -> String {
+        let (set, name, output) = match source {
+            Source::Coordinate(id) => {
+                let c = self.model.coordinate(id);
+                (c.joint_set.index(), c.name.as_str(), 0)
+            }
+            Source::Output(id, output) => {
+                let set = self.model.components()[id.index()].joint_set.index();
+                (set, self.components[id.index()].as_str(), output)
+            }
+        };
+        let name = escaped(name);
+        let set_name = escaped(&self.set(set));
+        text(&match (own == Some(set), output) {
+            (true, 0) => name,
+            (false, 0) => format!("{set_name}.{name}"),
+            (_, output) => format!("{set_name}.{name}.{}", output + 1),
+        })
+    }
+
+    fn component(&mut self, set: usize, component: &Component) {
+        let inputs = component.inputs();
+        let several = matches!(component, Component::Combine(_) | Component::Product(_));
+        if several {
+            let port =
+                if matches!(component, Component::Product(_)) { "factors" } else { "inputs" };
+            let names: Vec<String> =
+                inputs.iter().map(|(_, _, source)| self.port(Some(set), *source)).collect();
+            line!(self, "{port} = [{}]", names.join(", "));
+        } else {
+            for (port, _, source) in inputs {
+                let name = self.port(Some(set), source);
+                line!(self, "{port} = {name}");
+            }
+        }
+        match component {
+            Component::Map(c) => match &c.functions[..] {
+                [one] => line!(self, "function = {}", function(one)),
+                list => {
+                    let list: Vec<String> = list.iter().map(function).collect();
+                    line!(self, "functions = [{}]", list.join(", "));
+                }
+            },
+            Component::Combine(c) => line!(self, "function = {}", several_of(&c.function)),
+            Component::Depend(c) => {
+                for (side, f) in [("lower", &c.lower), ("upper", &c.upper)] {
+                    if let Some(f) = f {
+                        line!(self, "{side} = {}", function(f));
+                    }
+                }
+            }
+            Component::Pivot(c) => {
+                line!(self, "axis = {}", vector(c.axis()));
+                match c.centre() {
+                    Centre::Intervals(list) => {
+                        let one = |(to, at): &(f64, Vec3)| match to.is_finite() {
+                            true => format!("{{ to = {}, at = {} }}", number(*to), vector(*at)),
+                            false => format!("{{ at = {} }}", vector(*at)),
+                        };
+                        let list: Vec<String> = list.iter().map(one).collect();
+                        line!(self, "centres = [{}]", list.join(", "));
+                    }
+                    Centre::Path(splines) => {
+                        let list = splines.each_ref().map(|s| knots(&mut s.knots()));
+                        line!(self, "path = [{}]", list.join(", "));
+                    }
+                }
+            }
+            Component::Compensate(c) => {
+                let name = |id: SegmentId| text(&self.model.segment(id).name);
+                let segment = name(c.segment);
+                let ancestors: Vec<String> = c.ancestors.iter().map(|id| name(*id)).collect();
+                line!(self, "segment = {segment}");
+                line!(self, "ancestors = [{}]", ancestors.join(", "));
+                line!(self, "weight = {}", number(c.weight));
+            }
+            Component::Rotate(c) => line!(self, "axis = {}", vector(c.axis)),
+            Component::Translate(c) => line!(self, "axis = {}", vector(c.axis)),
+            Component::Place(c) => {
+                for part in frame(c.child_in_parent) {
+                    line!(self, "{part}");
+                }
+            }
+            Component::Ellipsoid(c) => line!(self, "radii = {}", vector(c.radii)),
+            Component::ConstantCurvature(c) => {
+                line!(self, "neutral = {}", numbers(&c.neutral));
+                line!(self, "length = {}", number(c.length));
+            }
+            Component::Ball(_) | Component::Product(_) => {}
+            // A kind that is not written yet: its name stands there, and reading refuses it.
+            #[allow(unreachable_patterns, reason = "kinds are added in another crate")]
+            _ => {}
+        }
+    }
+
+    fn closures(&mut self) {
+        let model = self.model;
+        let mut taken: HashSet<String> = HashSet::new();
+        for closure in model.closures() {
+            let mut name = closure.name.clone();
+            let mut count = 1;
+            while !taken.insert(name.clone()) {
+                count += 1;
+                name = format!("{}_{count}", closure.name);
+            }
+            line!(self, "\n[closure.{}]", key(&name));
+            let holder = |id: &Option<SegmentId>| {
+                id.map_or(String::new(), |id| {
+                    format!("segment = {}, ", text(&model.segment(id).name))
+                })
+            };
+            let point = |(id, p): &(Option<SegmentId>, Vec3)| {
+                format!("{{ {}at = {} }}", holder(id), vector(*p))
+            };
+            match &closure.condition {
+                Condition::Points { at: [a, b] } => {
+                    line!(self, "points = [{}, {}]", point(a), point(b));
+                }
+                Condition::Distance { at: [a, b], distance } => {
+                    line!(self, "points = [{}, {}]", point(a), point(b));
+                    line!(self, "distance = {}", number(*distance));
+                }
+                Condition::Frames { at } => {
+                    let one = |(id, f): &(Option<SegmentId>, Affine)| {
+                        let mut parts = frame(*f);
+                        if let Some(id) = id {
+                            parts
+                                .insert(0, format!("segment = {}", text(&model.segment(*id).name)));
+                        }
+                        format!("{{ {} }}", parts.join(", "))
+                    };
+                    line!(self, "frames = [{}, {}]", one(&at[0]), one(&at[1]));
+                }
+                Condition::Coupling { follower, driver, function: f } => {
+                    let follower = self.port(None, Source::Coordinate(*follower));
+                    let driver = self.port(None, Source::Coordinate(*driver));
+                    let f = function(f);
+                    line!(
+                        self,
+                        "coupling = {{ follower = {follower}, driver = {driver}, function = {f} }}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// A name as a key: bare where TOML allows it.
+fn key(name: &str) -> String {
+    let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    if !name.is_empty() && name.chars().all(bare) { name.to_owned() } else { text(name) }
+}
+
+fn text(value: &str) -> String {
+    let mut out = String::from("\"");
+    for c in value.chars() {
+        match c {
+            '"' => out.push_str("\\\""),
+            '\\' => out.push_str("\\\\"),
+            c if (c < ' ') || c == '\u{7f}' => {
+                let _ = write!(out, "\\u{:04X}", c as u32);
+            }
+            c => out.push(c),
+        }
+    }
+    out.push('"');
+    out
+}
+
+/// The shortest text that reads back to the same number.
+fn number(value: f64) -> String {
+    if value == value.trunc() && value.abs() < 1e9 && (value != 0.0 || value.is_sign_positive()) {
+        return format!("{value}");
+    }
+    format!("{value:?}")
+}
+
+fn numbers(values: &[f64]) -> String {
+    let list: Vec<String> = values.iter().map(|v| number(*v)).collect();
+    format!("[{}]", list.join(", "))
+}
+
+fn vector(v: Vec3) -> String {
+    numbers(&v.to_array())
+}
+
+/// The lines of a frame: `at`, and `turn` where three angles say the rotation to rounding, else
+/// `matrix`.
+fn frame(frame: Affine) -> Vec<String> {
+    let mut lines = vec![];
+    if frame.translation != Vec3::ZERO {
+        lines.push(format!("at = {}", vector(frame.translation)));
+    }
+    if frame.linear == Mat3::IDENTITY {
+        return lines;
+    }
+    let angles = EulerOrder::XYZ.from_mat3(frame.linear);
+    let again = EulerOrder::XYZ.to_mat3(angles);
+    let m = frame.linear;
+    let worst = [(m.x, again.x), (m.y, again.y), (m.z, again.z)].map(|(a, b)| (a - b).norm());
+    if worst.iter().all(|d| *d < 1e-15) {
+        lines.push(format!("turn = {}", numbers(&angles)));
+    } else {
+        let rows = m.transpose();
+        let rows = [rows.x, rows.y, rows.z].map(vector);
+        lines.push(format!("matrix = [{}]", rows.join(", ")));
+    }
+    lines
+}
+
+fn knots(list: &mut dyn Iterator<Item = (f64, f64)>) -> String {
+    let list: Vec<String> = list.map(|(x, y)| numbers(&[x, y])).collect();
+    format!("[{}]", list.join(", "))
+}
+
+fn function(f: &Function) -> String {
+    let curve = match &f.curve {
+        Curve::Constant(c) if f.factor == 1.0 => return number(*c),
+        Curve::Constant(c) => format!("constant = {}", number(*c)),
+        Curve::Linear { slope, intercept } => {
+            format!("linear = {}", numbers(&[*slope, *intercept]))
+        }
+        Curve::Polynomial(p) => format!("polynomial = {}", numbers(p.ascending())),
+        Curve::PiecewiseLinear(p) => format!("lines = {}", knots(&mut p.knots())),
+        Curve::SimmSpline(s) => format!("spline = {}", knots(&mut s.knots())),
+    };
+    if f.factor == 1.0 {
+        format!("{{ {curve} }}")
+    } else {
+        format!("{{ {curve}, factor = {} }}", number(f.factor))
+    }
+}
+
+fn several_of(f: &FunctionOfSeveral) -> String {
+    match f {
+        FunctionOfSeveral::Linear { slopes, intercept } => {
+            format!("{{ slopes = {}, intercept = {} }}", numbers(slopes), number(*intercept))
+        }
+        FunctionOfSeveral::Polynomial(p) => format!(
+            "{{ dimension = {}, order = {}, coefficients = {} }}",
+            p.dimension(),
+            p.order(),
+            numbers(p.coefficients())
+        ),
+    }
+}

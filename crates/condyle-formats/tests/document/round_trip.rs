@@ -1,0 +1,133 @@
+//! write, then read: the same model, to the last number of its parts.
+
+use super::{grow, pose, read};
+use condyle_formats::document;
+use condyle_formats::opensim::model as osim;
+use condyle_math::function::{Curve, PiecewiseLinear};
+use condyle_math::{Affine, Vec3};
+use condyle_model::model::Condition;
+use condyle_model::{Closure, Model, ModelBuilder, Range, UpAxis};
+use proptest::prelude::*;
+use std::path::{Path, PathBuf};
+
+/// Names, order, ranges, locks, couplings, markers and loops are kept exactly, poses to rounding.
+fn same(a: &Model, b: &Model, stored: &[f64], what: &str) {
+    assert_eq!(a.name(), b.name(), "{what}");
+    assert_eq!(a.up(), b.up(), "{what}");
+    assert_eq!(a.joint_sets(), b.joint_sets(), "{what}");
+    assert_eq!(a.coordinates(), b.coordinates(), "{what}");
+    assert_eq!(a.markers(), b.markers(), "{what}");
+    assert_eq!(a.closures().len(), b.closures().len(), "{what}");
+    for (a, b) in a.closures().iter().zip(b.closures()) {
+        assert_eq!(a.condition.rows(), b.condition.rows(), "{what}");
+        if !matches!(a.condition, Condition::Frames { .. }) {
+            assert_eq!(a.condition, b.condition, "{what}");
+        }
+    }
+    assert_eq!(a.segments().len(), b.segments().len(), "{what}");
+    for (a, b) in a.segments().iter().zip(b.segments()) {
+        assert_eq!((&a.name, a.parent, a.joint_set), (&b.name, b.parent, b.joint_set), "{what}");
+    }
+    for (index, (a, b)) in pose(a, stored).iter().zip(pose(b, stored)).enumerate() {
+        for (a, b) in a.iter().zip(b) {
+            let near = (a - b).abs() <= 1e-12 * (1.0 + a.abs());
+            assert!(near || !a.is_finite(), "{what}: segment {index}: {a} and {b}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+    #[test]
+    fn random_models_are_kept(seed in any::<u64>()) {
+        let (model, stored) = grow::random_model(seed);
+        let text = document::write(&model);
+        let again = read(&text);
+        same(&model, &again, &stored, &format!("seed {seed}"));
+        // What was written once is written the same again.
+        prop_assert_eq!(document::write(&again).lines().count(), text.lines().count());
+    }
+}
+
+fn models(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            models(&path, found);
+        } else if path.extension().is_some_and(|e| e == "osim") {
+            found.push(path);
+        }
+    }
+}
+
+#[test]
+fn models_of_opensim_are_kept() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    if !folder.is_dir() {
+        println!("skipped: shared data absent");
+        return;
+    }
+    let mut found = vec![];
+    models(&folder, &mut found);
+    let mut kept = 0;
+    for path in found {
+        let Ok(model) = osim::read(&std::fs::read(&path).unwrap()) else { continue };
+        let model = model.value;
+        let again = read(&document::write(&model));
+        // Away from the defaults, each coordinate by another amount.
+        let moved: Vec<f64> = model
+            .defaults()
+            .iter()
+            .enumerate()
+            .map(|(i, v)| v + 0.1 * ((i * 7 % 11) as f64 - 5.0) / 5.0)
+            .collect();
+        let name = path.file_name().unwrap().to_string_lossy();
+        same(&model, &again, &model.defaults(), &name);
+        same(&model, &again, &moved, &name);
+        kept += 1;
+    }
+    assert!(kept > 20, "{kept} models were read");
+}
+
+#[test]
+fn odd_names_and_every_closure_are_kept() {
+    let mut b = ModelBuilder::new("quote \" and \\ and \n line");
+    b.up(UpAxis::Z);
+    let base = b.segment("a.b c", None);
+    let tip = b.segment("", Some(base));
+    b.place_joint(tip, Vec3::new(0.0, -0.0, 1e-300));
+    let (_, first) = b.hinge("set.with.dots", base, "angle.2", Vec3::Z);
+    let (set, second) = b.hinge("1", tip, "2", Vec3::X);
+    b.coordinate_mut(second).source = Some("Grood & Suntay 1983, Δ \u{7} \u{7f}".to_owned());
+    b.coordinate_mut(second).range = Range { lower: None, upper: Some(1e-9), enforced: false };
+    let lines = PiecewiseLinear::new(vec![0.0, 0.5, 0.5], vec![1.0, 2.0, -3.5]).unwrap();
+    let lines = condyle_math::function::Function::from(Curve::PiecewiseLinear(lines));
+    let led = b.map(set, "map.of.it", first, lines.clone());
+    b.follow(second, led);
+    b.marker("m.1", None, Vec3::new(1.0, 2.0, 3.0));
+    let at = [(Some(base), Vec3::X), (None, Vec3::Y)];
+    for condition in [
+        Condition::Points { at },
+        Condition::Distance { at, distance: 0.25 },
+        Condition::Frames {
+            at: [(Some(tip), Affine::from_translation(Vec3::Z)), (None, Affine::IDENTITY)],
+        },
+        Condition::Coupling { follower: first, driver: second, function: lines },
+    ] {
+        b.closure(Closure { name: "same name".to_owned(), condition });
+    }
+    let model = b.build().unwrap();
+    let again = read(&document::write(&model));
+    same(&model, &again, &[0.3, 0.0], "odd names");
+    assert_eq!(model.closures()[2].condition, again.closures()[2].condition);
+    assert_eq!(again.closures()[1].name, "same name_2");
+}
+
+#[test]
+fn a_document_is_saved_as_it_was_written() {
+    let text = "# mine\ncondyle = 1\nkind = \"model\"\n\n[segment.a]   # one bone\n";
+    let document = super::try_read(text).unwrap().value;
+    assert_eq!(document.source, text);
+    let expanded = document::Document::of(document.model.clone());
+    assert_eq!(read(&expanded.source), document.model);
+}

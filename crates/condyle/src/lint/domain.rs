@@ -1,0 +1,153 @@
+//! Functions of knots, and the arguments that ranges let them have.
+//!
+//! Beyond its last knot a spline goes on straight, which is nobody's measurement: the range of the
+//! coordinate that drives it promises more than the function knows.
+
+use super::{Finding, Severity, Subject, amount};
+use condyle_math::function::Function;
+use condyle_model::component::{Component, Source};
+use condyle_model::{CoordinateId, CoordinateKind};
+use std::collections::BTreeMap;
+
+/// Past the knots by less than this part of their span is rounding of the file.
+const ROUNDING: f64 = 2e-3;
+
+/// One function that is used beyond its knots on one side.
+struct Beyond {
+    /// Who makes the number.
+    function: String,
+    /// The last knot there.
+    knot: f64,
+    /// The argument that lies farthest out, and what the leader is then.
+    argument: f64,
+    leader: f64,
+    /// How far the function runs on from its value at the knot, and what it makes.
+    drift: f64,
+    makes: CoordinateKind,
+    /// Whether the argument is the leading coordinate's own value.
+    direct: bool,
+}
+
+/// One finding for each coordinate and side of its range, with all functions that are too short.
+pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+    let mut found: BTreeMap<(CoordinateId, bool), Vec<Beyond>> = BTreeMap::new();
+    for (index, named) in subject.model.components().iter().enumerate() {
+        let Component::Map(map) = &named.component else { continue };
+        if !map.functions.iter().any(|f| f.domain().is_some() && !is_flat(f)) {
+            continue;
+        }
+        let Some(taken) = subject.reach.taken(map.input) else { continue };
+        let ([leader], Some(extremes)) = (&taken.leaders[..], taken.extremes()) else { continue };
+        let set = &subject.model.joint_sets()[named.joint_set.index()].name;
+        for (output, function) in map.functions.iter().enumerate() {
+            let Some((first, last)) = function.domain().filter(|_| !is_flat(function)) else {
+                continue;
+            };
+            for (upper, knot) in [(false, first), (true, last)] {
+                let (values, argument) = extremes[usize::from(upper)];
+                let past = if upper { argument - knot } else { knot - argument };
+                if past <= ROUNDING * (last - first).max(0.5) {
+                    continue;
+                }
+                let value = |x: f64| function.value_and_slope(x).0;
+                let middle = (extremes[0].0[0] + extremes[1].0[0]) / 2.0;
+                found.entry((*leader, values[0] > middle)).or_default().push(Beyond {
+                    function: name_of(subject, index, set),
+                    knot,
+                    argument: *argument,
+                    leader: values[0],
+                    drift: value(*argument) - value(knot),
+                    makes: made(subject, index, output),
+                    direct: (values[0] - argument).abs() < 1e-6,
+                });
+            }
+        }
+    }
+    for ((leader, _), list) in found {
+        findings.push(say(subject, leader, &list));
+    }
+}
+
+/// What an output is used as: an angle, a distance, the value of a coordinate, or something else.
+fn made(subject: &Subject<'_>, component: usize, output: usize) -> CoordinateKind {
+    let is_it = |source: Source| matches!(source, Source::Output(id, n) if (id.index(), n as usize) == (component, output));
+    for named in subject.model.components() {
+        match &named.component {
+            Component::Rotate(c) if is_it(c.angle) => return CoordinateKind::Rotation,
+            Component::Translate(c) if is_it(c.distance) => return CoordinateKind::Translation,
+            _ => {}
+        }
+    }
+    let mut coordinates = subject.model.coordinates().iter();
+    let follower = coordinates.find(|c| c.follows.is_some_and(is_it));
+    follower.map_or(CoordinateKind::Other, |c| c.kind)
+}
+
+/// A function by what it makes: a coordinate that follows it, or its component.
+fn name_of(subject: &Subject<'_>, component: usize, set: &str) -> String {
+    let follower = subject.model.coordinate_ids().find(|&id| {
+        matches!(subject.model.coordinate(id).follows, Some(Source::Output(made, _))
+            if made.index() == component)
+    });
+    match follower {
+        Some(id) => subject.key(id),
+        None => format!("{set}/{}", subject.model.components()[component].name),
+    }
+}
+
+/// A function that is the same everywhere, whatever its knots.
+fn is_flat(function: &Function) -> bool {
+    let Some((first, last)) = function.domain() else { return true };
+    let slope = |x: f64| function.value_and_slope(x).1.abs();
+    (0..=16).all(|i| slope(first + (last - first) * f64::from(i) / 16.0) < 1e-12)
+}
+
+fn say(subject: &Subject<'_>, leader: CoordinateId, list: &[Beyond]) -> Finding {
+    let key = subject.key(leader);
+    let kind = subject.kind(leader);
+    let worst = list
+        .iter()
+        .max_by(|a, b| (a.argument - a.knot).abs().total_cmp(&(b.argument - b.knot).abs()))
+        .unwrap_or(&list[0]);
+    let mut names: Vec<String> = list.iter().map(|b| b.function.clone()).collect();
+    names.sort();
+    names.dedup();
+    // Degrees of an argument make sense only if it is a coordinate's own value.
+    let unit = if worst.direct { kind } else { CoordinateKind::Other };
+    let past = (worst.argument - worst.knot).abs();
+    let argument = match worst.direct {
+        true => String::new(),
+        false => format!(" (its argument is then {})", amount(unit, worst.argument)),
+    };
+    let drifts: Vec<String> =
+        [CoordinateKind::Rotation, CoordinateKind::Translation, CoordinateKind::Other]
+            .into_iter()
+            .filter_map(|kind| {
+                let own = list.iter().filter(|b| b.makes == kind).map(|b| b.drift.abs());
+                own.max_by(f64::total_cmp).map(|most| amount(kind, most))
+            })
+            .collect();
+    let functions = match names.len() {
+        1 => format!("the function of `{}`", names[0]),
+        n => format!("{n} functions ({})", super::listed(&names)),
+    };
+    let enforced = subject.model.coordinate(leader).range.enforced;
+    let mut subjects = vec![key.clone()];
+    subjects.extend(names.iter().cloned());
+    Finding::new(
+        if enforced { Severity::Warning } else { Severity::Note },
+        "lint/beyond-knots",
+        subjects,
+        format!(
+            "`{key}` may reach {}{argument}, but {functions} that it drives end{} at {}: the last {} \
+             {} extrapolated, by up to {}",
+            amount(kind, worst.leader),
+            if names.len() == 1 { "s" } else { "" },
+            amount(unit, worst.knot),
+            amount(unit, past),
+            if worst.direct { "are" } else { "of its argument are" },
+            drifts.join(" and "),
+        ),
+        "narrow the range to the knots, or add knots",
+    )
+}

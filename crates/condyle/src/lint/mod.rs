@@ -1,0 +1,264 @@
+//! What is odd in a model, or in a motion of it, although it can be read and posed.
+//!
+//! A family of rules, one file for each subject. Every rule looks at a model and answers with
+//! [`Finding`]s; it changes nothing and never fails. Rules speak of what a file says against itself:
+//! a range against the knots of a spline, a left side against a right one, a default against its
+//! range. None of them knows what a human body can do, for that is what limits with a source are
+//! for.
+//!
+//! | file | what it looks at |
+//! | --- | --- |
+//! | `range` | limits that cross, that are none, that look like degrees; defaults outside them |
+//! | `domain` | functions used beyond their knots |
+//! | `coupling` | followers: ranges that leaders break, chains, coordinates that move nothing |
+//! | `rotation` | axes that coincide, at rest or inside a range |
+//! | `place` | far joints and markers, markers in one place |
+//! | `closure` | loops that are open in the default pose |
+//! | `names` | names that differ by case or spaces only |
+//! | `symmetry` | left against right |
+//! | [`motion`] | a motion against its model |
+//!
+//! To add a rule: a function in the file of its subject, called in that file's `check`; a row in its
+//! tests with a model that breaks it and one that does not.
+//!
+//! A finding is an *error* if the model contradicts itself, or a motion leaves a range that is
+//! enforced; a *warning* if it is unlikely to be meant; a *note* if it is worth knowing.
+
+mod closure;
+mod coupling;
+mod domain;
+pub mod motion;
+mod names;
+mod place;
+mod range;
+mod reach;
+mod rotation;
+mod symmetry;
+
+use condyle_formats::Diagnostic;
+use condyle_model::{CoordinateId, CoordinateKind, Mode, Model, Pose, Program};
+use reach::Reach;
+
+/// How bad a finding is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// Worth knowing.
+    Note,
+    /// Unlikely to be meant.
+    Warning,
+    /// Contradicts itself, or breaks a limit that is enforced.
+    Error,
+}
+
+impl Severity {
+    /// The word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Note => "note",
+            Self::Warning => "warning",
+            Self::Error => "error",
+        }
+    }
+}
+
+/// One thing that a rule found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// How bad it is.
+    pub severity: Severity,
+    /// A stable key, `family/rule`, for programs.
+    pub code: &'static str,
+    /// One sentence for people, with names and numbers in degrees and millimetres.
+    pub message: String,
+    /// The names of what it is about: coordinates by key, segments, markers, loops.
+    pub subjects: Vec<String>,
+    /// What would be right.
+    pub help: String,
+}
+
+impl Finding {
+    fn new(
+        severity: Severity,
+        code: &'static str,
+        subjects: impl IntoIterator<Item = String>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Self {
+        Self {
+            severity,
+            code,
+            message: message.into(),
+            subjects: subjects.into_iter().collect(),
+            help: help.into(),
+        }
+    }
+
+    /// Whether it makes a check fail: all but notes do.
+    pub fn counts(&self) -> bool {
+        self.severity > Severity::Note
+    }
+}
+
+/// What a reader wondered about; its place in the file becomes part of the message.
+impl From<&Diagnostic> for Finding {
+    fn from(said: &Diagnostic) -> Self {
+        let place = said.place.map_or(String::new(), |place| format!("{place}: "));
+        let message = format!("{place}{}", said.message);
+        let mended = MENDED.contains(&said.code);
+        let severity = if mended { Severity::Note } else { Severity::Warning };
+        Self::new(severity, said.code, [], message, said.help.clone().unwrap_or_default())
+    }
+}
+
+/// What a builder found in a model made in Rust.
+impl From<&condyle_model::Finding> for Finding {
+    fn from(found: &condyle_model::Finding) -> Self {
+        let severity = match found.severity {
+            condyle_model::Severity::Error => Severity::Error,
+            condyle_model::Severity::Warning => Severity::Warning,
+        };
+        Self::new(severity, found.code, [], &found.message, &found.help)
+    }
+}
+
+/// Slips of spelling that a reader mends without a guess: official files have them.
+const MENDED: [&str; 2] = ["text/encoding", "xml/prefix"];
+
+/// Said again, with names and numbers, by a rule of this family.
+const SAID_BETTER: [&str; 3] =
+    ["model/crossing-range", "model/default-outside-range", "osim/degrees"];
+
+/// All findings about a model, and what its reader wondered about; the worst first.
+///
+/// ```
+/// use condyle::{ModelBuilder, Range, lint, math::Vec3};
+/// let mut b = ModelBuilder::new("arm");
+/// let forearm = b.segment("forearm", None);
+/// let (_, flexion) = b.hinge("elbow", forearm, "flexion", Vec3::Z);
+/// b.coordinate_mut(flexion).range = Range::new(0.0, 140.0);
+/// let findings = lint::check(&b.build().unwrap(), &[]);
+/// assert_eq!(findings[0].code, "lint/degrees");
+/// ```
+pub fn check(model: &Model, warnings: &[Diagnostic]) -> Vec<Finding> {
+    let mut findings: Vec<Finding> = warnings
+        .iter()
+        .filter(|said| !SAID_BETTER.contains(&said.code))
+        .map(Finding::from)
+        .collect();
+    let subject = Subject::new(model);
+    range::check(&subject, &mut findings);
+    domain::check(&subject, &mut findings);
+    coupling::check(&subject, &mut findings);
+    rotation::check(&subject, &mut findings);
+    place::check(&subject, &mut findings);
+    closure::check(&subject, &mut findings);
+    names::check(&subject, &mut findings);
+    symmetry::check(&subject, &mut findings);
+    if !subject.reach.finished() {
+        findings.push(Finding::new(
+            Severity::Note,
+            "lint/unfinished",
+            [],
+            "couplings are so many that some were not followed through their leaders' ranges",
+            "what is said about knots and followers may not be all",
+        ));
+    }
+    findings.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
+    findings
+}
+
+/// A model with what most rules ask of it.
+struct Subject<'m> {
+    model: &'m Model,
+    program: Program,
+    /// The pose of the defaults, limits not applied.
+    rest: Pose,
+    /// The key of every coordinate.
+    keys: Vec<String>,
+    reach: Reach<'m>,
+}
+
+impl<'m> Subject<'m> {
+    fn new(model: &'m Model) -> Self {
+        let program = Program::compile(model);
+        let mut rest = Pose::new(&program);
+        // Both buffers are made for this program.
+        let _ = program.evaluate(&model.defaults(), Mode::Open, &mut rest);
+        let keys = model.coordinate_ids().map(|id| model.coordinate_key(id)).collect();
+        Self { model, program, rest, keys, reach: Reach::new(model) }
+    }
+
+    fn key(&self, id: CoordinateId) -> String {
+        self.keys[id.index()].clone()
+    }
+
+    fn kind(&self, id: CoordinateId) -> CoordinateKind {
+        self.model.coordinate(id).kind
+    }
+
+    /// A value of a coordinate with its unit.
+    fn shown(&self, id: CoordinateId, value: f64) -> String {
+        amount(self.kind(id), value)
+    }
+}
+
+/// Limits beyond this, in radians or metres, say only that there is none.
+const NO_LIMIT: f64 = 1000.0;
+
+/// Both limits of a coordinate, if they limit anything.
+fn real_range(model: &Model, id: CoordinateId) -> Option<(f64, f64)> {
+    let coordinate = model.coordinate(id);
+    let (lower, upper) = (coordinate.range.lower?, coordinate.range.upper?);
+    let real = coordinate.kind != CoordinateKind::Orientation
+        && lower <= upper
+        && lower.abs().max(upper.abs()) <= NO_LIMIT;
+    real.then_some((lower, upper))
+}
+
+/// What differs by less than this is the same on paper: 0.01 degrees, 0.01 mm.
+fn tolerance(kind: CoordinateKind) -> f64 {
+    match kind {
+        CoordinateKind::Rotation | CoordinateKind::Orientation => 0.01f64.to_radians(),
+        CoordinateKind::Translation => 1e-5,
+        CoordinateKind::Other => 1e-4,
+    }
+}
+
+/// A value with its unit: degrees, millimetres, or metres from one metre up.
+fn amount(kind: CoordinateKind, value: f64) -> String {
+    match kind {
+        CoordinateKind::Rotation | CoordinateKind::Orientation => {
+            format!("{}°", rounded(value.to_degrees(), 2))
+        }
+        CoordinateKind::Translation if value.abs() >= 1.0 => format!("{} m", rounded(value, 3)),
+        CoordinateKind::Translation => format!("{} mm", rounded(1e3 * value, 2)),
+        CoordinateKind::Other => rounded(value, 4),
+    }
+}
+
+/// A length in millimetres, or metres from one metre up.
+fn length(value: f64) -> String {
+    amount(CoordinateKind::Translation, value)
+}
+
+/// A few decimals, without zeros at the end or a minus before zero.
+fn rounded(value: f64, decimals: usize) -> String {
+    if value.abs() >= 1e7 {
+        return format!("{value:.3e}");
+    }
+    let text = format!("{value:.decimals$}");
+    let trimmed = match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.'),
+        false => &text,
+    };
+    if trimmed == "-0" { "0".to_owned() } else { trimmed.to_owned() }
+}
+
+/// Names one after another, at most six of them.
+fn listed(names: &[String]) -> String {
+    let shown: Vec<String> = names.iter().take(6).map(|n| format!("`{n}`")).collect();
+    match names.len() - shown.len() {
+        0 => shown.join(", "),
+        more => format!("{} and {more} more", shown.join(", ")),
+    }
+}

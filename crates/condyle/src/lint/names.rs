@@ -1,0 +1,38 @@
+//! Names that people, and programs that ignore case, take for each other.
+
+use super::{Finding, Severity, Subject};
+use std::collections::BTreeMap;
+
+pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+    let model = subject.model;
+    let set = |index: usize| &model.joint_sets()[index].name;
+    let families: [(&str, Vec<String>); 4] = [
+        ("segments", model.segments().iter().map(|s| s.name.clone()).collect()),
+        ("joint sets", model.joint_sets().iter().map(|s| s.name.clone()).collect()),
+        (
+            "coordinates",
+            model
+                .coordinates()
+                .iter()
+                .map(|c| format!("{}/{}", set(c.joint_set.index()), c.name))
+                .collect(),
+        ),
+        ("markers", model.markers().iter().map(|m| m.name.clone()).collect()),
+    ];
+    for (what, names) in families {
+        let mut alike: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        for name in names {
+            let plain: String = name.chars().filter(|c| !c.is_whitespace()).collect();
+            alike.entry(plain.to_lowercase()).or_default().push(name);
+        }
+        for names in alike.into_values().filter(|names| names.len() > 1) {
+            findings.push(Finding::new(
+                Severity::Warning,
+                "lint/alike-names",
+                names.iter().cloned(),
+                format!("the {what} {} differ by case or spaces only", super::listed(&names)),
+                "give them names that differ: labels are matched ignoring case",
+            ));
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! Where joints and markers stand.
+
+use super::{Finding, Severity, Subject, length};
+use condyle_model::SegmentId;
+use std::collections::HashMap;
+
+/// Joints farther than this from their segment's origin were placed in millimetres.
+const FARTHEST_JOINT: f64 = 10.0;
+
+/// Markers farther than this from their segment's origin are on no body.
+const FARTHEST_MARKER: f64 = 1.0;
+
+pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+    joints(subject, findings);
+    markers(subject, findings);
+    twins(subject, findings);
+}
+
+fn joints(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+    for segment in subject.model.segments() {
+        let places =
+            [(segment.joint_in_parent, segment.parent.is_some()), (segment.joint_in_segment, true)];
+        let far = places.into_iter().filter(|(_, in_body)| *in_body);
+        let far = far.map(|(frame, _)| frame.translation.norm()).fold(0.0, f64::max);
+        if far <= FARTHEST_JOINT {
+            continue;
+        }
+        findings.push(Finding::new(
+            Severity::Warning,
+            "lint/millimetres",
+            [segment.name.clone()],
+            format!("the joint of `{}` lies {} from an origin", segment.name, length(far)),
+            "lengths of a model are in metres: were these millimetres?",
+        ));
+    }
+}
+
+fn markers(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+    for marker in subject.model.markers() {
+        let Some(segment) = marker.segment else { continue };
+        let far = marker.point.norm();
+        if far <= FARTHEST_MARKER {
+            continue;
+        }
+        let segment = &subject.model.segment(segment).name;
+        findings.push(Finding::new(
+            Severity::Warning,
+            "lint/far-marker",
+            [marker.name.clone(), segment.clone()],
+            format!("marker `{}` lies {} from the origin of `{segment}`", marker.name, length(far)),
+            "is it on another segment, or in millimetres?",
+        ));
+    }
+}
+
+/// Markers of one segment in one place.
+fn twins(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+    type Spot = (Option<SegmentId>, [i64; 3]);
+    let mut at: HashMap<Spot, Vec<&str>> = HashMap::new();
+    let mut order = vec![];
+    for marker in subject.model.markers() {
+        // Ten micrometres: equal in the digits of a file.
+        let spot = (marker.segment, marker.point.to_array().map(|v| (v * 1e5).round() as i64));
+        let here = at.entry(spot).or_default();
+        if here.is_empty() {
+            order.push(spot);
+        }
+        here.push(&marker.name);
+    }
+    for spot in order {
+        let names: Vec<String> = at[&spot].iter().map(|&name| name.to_owned()).collect();
+        if names.len() < 2 {
+            continue;
+        }
+        let segment = spot.0.map_or("the world", |id| &subject.model.segment(id).name);
+        findings.push(Finding::new(
+            Severity::Note,
+            "lint/marker-twins",
+            names.iter().cloned(),
+            format!("markers {} of `{segment}` are in one place", super::listed(&names)),
+            "give each its own place, or keep one",
+        ));
+    }
+}

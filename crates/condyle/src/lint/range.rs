@@ -1,0 +1,119 @@
+//! Limits and defaults of single coordinates.
+
+use super::{Finding, NO_LIMIT, Severity, Subject, tolerance};
+use condyle_model::{CoordinateId, CoordinateKind};
+use std::f64::consts::PI;
+
+/// Limits that cross, limits that are none, limits in degrees, defaults outside.
+pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+    for id in subject.model.coordinate_ids() {
+        if subject.kind(id) == CoordinateKind::Orientation {
+            continue;
+        }
+        let range = subject.model.coordinate(id).range;
+        if let (Some(lower), Some(upper)) = (range.lower, range.upper)
+            && lower > upper
+        {
+            findings.push(crossing(subject, id, lower, upper));
+            continue;
+        }
+        let odd = size(subject, id);
+        let dummy = odd.is_some();
+        findings.extend(odd);
+        if !dummy {
+            findings.extend(default(subject, id));
+        }
+    }
+}
+
+fn crossing(subject: &Subject<'_>, id: CoordinateId, lower: f64, upper: f64) -> Finding {
+    let (key, lower, upper) = (subject.key(id), subject.shown(id, lower), subject.shown(id, upper));
+    Finding::new(
+        Severity::Error,
+        "lint/crossing-range",
+        [key.clone()],
+        format!("`{key}` has its lower limit {lower} above its upper limit {upper}"),
+        "exchange the two",
+    )
+}
+
+/// Limits in degrees instead of radians: too far for a joint, round, and within a turn.
+fn degrees(limits: &[f64]) -> bool {
+    let most = limits.iter().fold(0.0f64, |most, l| most.max(l.abs()));
+    let whole = |l: &f64| (l - l.round()).abs() < 1e-9;
+    most > 2.0 * PI * 1.001 && most <= 360.0 && limits.iter().all(whole)
+}
+
+fn size(subject: &Subject<'_>, id: CoordinateId) -> Option<Finding> {
+    let coordinate = subject.model.coordinate(id);
+    let limits: Vec<f64> =
+        [coordinate.range.lower, coordinate.range.upper].into_iter().flatten().collect();
+    let key = subject.key(id);
+    let rotation = coordinate.kind == CoordinateKind::Rotation;
+    let text = match limits[..] {
+        [lower, upper] => format!("{lower} to {upper}"),
+        [one] => one.to_string(),
+        _ => return None,
+    };
+    if rotation && degrees(&limits) {
+        return Some(Finding::new(
+            Severity::Warning,
+            "lint/degrees",
+            [key.clone()],
+            format!("the range of `{key}`, {text} radians, looks like degrees"),
+            "angles of a model are in radians: divide by 57.29578",
+        ));
+    }
+    let far = limits.iter().any(|l| l.is_finite() && l.abs() > NO_LIMIT);
+    let wide = rotation && limits.len() == 2 && limits[1] - limits[0] > 4.0 * PI * 1.001;
+    if !far && !wide {
+        return None;
+    }
+    let unit = match coordinate.kind {
+        CoordinateKind::Rotation => " radians",
+        CoordinateKind::Translation => " metres",
+        _ => "",
+    };
+    let follows = coordinate.follows.is_some();
+    let harmless = follows || !coordinate.range.enforced;
+    Some(Finding::new(
+        if harmless { Severity::Note } else { Severity::Warning },
+        "lint/dummy-range",
+        [key.clone()],
+        format!("the range of `{key}`, {text}{unit}, limits nothing"),
+        match (follows, harmless) {
+            (true, _) => "a coordinate that follows needs no range; leave it out",
+            (false, true) => "nothing is held to it, as it is not clamped; leave it out",
+            (false, false) => "it is clamped to no limit: give a real one, or do not clamp it",
+        },
+    ))
+}
+
+/// A default that its own range forbids, of a coordinate that may be chosen.
+fn default(subject: &Subject<'_>, id: CoordinateId) -> Option<Finding> {
+    let coordinate = subject.model.coordinate(id);
+    let value = coordinate.default[0];
+    let range = coordinate.range;
+    let (lower, upper) =
+        (range.lower.unwrap_or(f64::NEG_INFINITY), range.upper.unwrap_or(f64::INFINITY));
+    let nearest = value.max(lower).min(upper);
+    let by = (value - nearest).abs();
+    if coordinate.follows.is_some() || by <= tolerance(coordinate.kind) {
+        return None;
+    }
+    let key = subject.key(id);
+    let side = if value < lower { "below" } else { "above" };
+    Some(Finding::new(
+        if range.enforced { Severity::Warning } else { Severity::Note },
+        "lint/default-outside-range",
+        [key.clone()],
+        format!(
+            "the default of `{key}`, {}, lies {} {side} its {}range, which ends at {}",
+            subject.shown(id, value),
+            subject.shown(id, by),
+            if range.enforced { "clamped " } else { "" },
+            subject.shown(id, nearest)
+        ),
+        "move the default into the range, or widen the range",
+    ))
+}

@@ -1,0 +1,232 @@
+//! Which values the scalars of a model take while their leaders run through their ranges.
+//!
+//! Laws of scalars are few and small, so they are run here one by one, in the order in which they
+//! need each other, at samples of the leaders: every sample is a value that the model really takes,
+//! and with one leader it is known which of its values does it.
+
+use super::real_range;
+use condyle_model::component::{Component, Source};
+use condyle_model::{CoordinateId, CoordinateKind, Model};
+use std::cell::Cell;
+use std::collections::HashMap;
+
+/// Samples of a range with one leader.
+const STEPS: usize = 240;
+
+/// Samples with several leaders.
+const SEVERAL: usize = 4096;
+
+/// A scalar with more leaders than this is not sampled, and its leaders beyond are not named.
+const MOST_LEADERS: usize = 32;
+
+/// How many scalars are computed in all: some seconds. No real model comes near it.
+const BUDGET: usize = 20_000_000;
+
+/// The scalars of a model, in an order in which they can be computed.
+pub(super) struct Reach<'m> {
+    model: &'m Model,
+    /// Followers and outputs of components, each after what it reads.
+    order: Vec<Source>,
+    place: HashMap<Source, usize>,
+    /// For each of them the free coordinates that determine it.
+    leaders: Vec<Vec<CoordinateId>>,
+    left: Cell<usize>,
+}
+
+/// The values that a scalar took.
+pub(super) struct Taken {
+    /// The coordinates that lead it, followers not among them.
+    pub(super) leaders: Vec<CoordinateId>,
+    /// The leaders' values and the scalar's own, sample by sample.
+    pub(super) samples: Vec<(Vec<f64>, f64)>,
+}
+
+impl Taken {
+    /// The sample with the least and that with the greatest value.
+    pub(super) fn extremes(&self) -> Option<[&(Vec<f64>, f64); 2]> {
+        let least = self.samples.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let greatest = self.samples.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some([least, greatest])
+    }
+}
+
+/// What a scalar reads: nothing for a coordinate that is free, or for what is no law of scalars.
+fn reads(model: &Model, source: Source) -> Vec<Source> {
+    match source {
+        Source::Coordinate(id) => model.coordinate(id).follows.into_iter().collect(),
+        Source::Output(id, _) => {
+            let component = &model.components()[id.index()].component;
+            component.inputs().into_iter().map(|(_, _, source)| source).collect()
+        }
+    }
+}
+
+impl<'m> Reach<'m> {
+    pub(super) fn new(model: &'m Model) -> Self {
+        let mut wanted: Vec<Source> = model.coordinate_ids().map(Source::Coordinate).collect();
+        for named in model.components() {
+            wanted.extend(named.component.inputs().into_iter().map(|(_, _, source)| source));
+        }
+        let mut reach = Self {
+            model,
+            order: vec![],
+            place: HashMap::new(),
+            leaders: vec![],
+            left: Cell::new(BUDGET),
+        };
+        // Depth first with a stack: a scalar is computed after all that it reads.
+        let mut seen = std::collections::HashSet::new();
+        let mut stack: Vec<(Source, bool)> = vec![];
+        for source in wanted {
+            stack.push((source, false));
+            while let Some((source, ready)) = stack.pop() {
+                if ready {
+                    let leaders = reach.leaders_of(source);
+                    reach.place.insert(source, reach.order.len());
+                    reach.order.push(source);
+                    reach.leaders.push(leaders);
+                } else if seen.insert(source) {
+                    stack.push((source, true));
+                    stack.extend(reads(model, source).into_iter().map(|s| (s, false)));
+                }
+            }
+        }
+        reach
+    }
+
+    /// The leaders of a scalar, from those of what it reads.
+    fn leaders_of(&self, source: Source) -> Vec<CoordinateId> {
+        let reads = reads(self.model, source);
+        if let (Source::Coordinate(id), []) = (source, &reads[..]) {
+            return vec![id];
+        }
+        let mut leaders: Vec<CoordinateId> =
+            reads.into_iter().flat_map(|read| self.leaders(read).iter().copied()).collect();
+        leaders.sort_unstable();
+        leaders.dedup();
+        leaders.truncate(MOST_LEADERS + 1);
+        leaders
+    }
+
+    /// The free coordinates that determine a scalar, in the model's order.
+    pub(super) fn leaders(&self, source: Source) -> &[CoordinateId] {
+        self.place.get(&source).map_or(&[], |&place| &self.leaders[place])
+    }
+
+    /// Whether all that was asked for could be sampled.
+    pub(super) fn finished(&self) -> bool {
+        self.left.get() > 0
+    }
+
+    /// All that must be computed before a scalar, and itself, in order.
+    fn plan(&self, source: Source) -> Vec<Source> {
+        let mut seen = std::collections::HashSet::from([source]);
+        let mut open = vec![source];
+        while let Some(next) = open.pop() {
+            open.extend(reads(self.model, next).into_iter().filter(|&s| seen.insert(s)));
+        }
+        let mut plan: Vec<Source> = seen.into_iter().collect();
+        plan.sort_by_key(|source| self.place.get(source));
+        plan
+    }
+
+    fn run(&self, plan: &[Source], leader: impl Fn(CoordinateId) -> f64) -> f64 {
+        let mut values: HashMap<Source, f64> = HashMap::with_capacity(plan.len());
+        let mut last = f64::NAN;
+        for &source in plan {
+            let of = |source: Source| values.get(&source).copied().unwrap_or(f64::NAN);
+            last = match source {
+                Source::Coordinate(id) => match self.model.coordinate(id).follows {
+                    Some(follows) => of(follows),
+                    None => leader(id),
+                },
+                Source::Output(id, output) => {
+                    match &self.model.components()[id.index()].component {
+                        Component::Map(map) => map
+                            .functions
+                            .get(output as usize)
+                            .map_or(f64::NAN, |f| f.value_and_slope(of(map.input)).0),
+                        Component::Combine(combine) => {
+                            let inputs: Vec<f64> = combine.inputs.iter().map(|&s| of(s)).collect();
+                            combine.function.apply(&inputs)
+                        }
+                        _ => f64::NAN,
+                    }
+                }
+            };
+            values.insert(source, last);
+        }
+        last
+    }
+
+    /// A scalar where every coordinate has its default.
+    pub(super) fn at_rest(&self, source: Source) -> f64 {
+        self.run(&self.plan(source), |id| self.model.coordinate(id).default[0])
+    }
+
+    /// The values of a scalar while its leaders run through their declared ranges, locked ones
+    /// standing at their defaults; none if a leader has no range, or if it is no law of scalars.
+    pub(super) fn taken(&self, source: Source) -> Option<Taken> {
+        let leaders = self.leaders(source);
+        if leaders.len() > MOST_LEADERS || !self.finished() {
+            return None;
+        }
+        let mut ranges = vec![];
+        for &id in leaders {
+            let coordinate = self.model.coordinate(id);
+            if coordinate.kind == CoordinateKind::Orientation {
+                return None;
+            }
+            ranges.push(if coordinate.locked {
+                (coordinate.default[0], coordinate.default[0])
+            } else {
+                real_range(self.model, id)?
+            });
+        }
+        let plan = self.plan(source);
+        let moving = ranges.iter().filter(|(lower, upper)| lower < upper).count();
+        let count = match moving {
+            0 => 1,
+            1 => STEPS + 1,
+            _ => SEVERAL,
+        };
+        let cost = plan.len().saturating_mul(count + 1);
+        self.left.set(self.left.get().saturating_sub(cost));
+        if !self.finished() {
+            return None;
+        }
+        let mut samples = Vec::with_capacity(count);
+        let mut place = HashMap::new();
+        for index in 0..count {
+            let values: Vec<f64> = ranges
+                .iter()
+                .enumerate()
+                .map(|(which, &(lower, upper))| {
+                    let part = match moving {
+                        1 => index as f64 / STEPS as f64,
+                        _ => corner_or_inside(index, which),
+                    };
+                    lower + part * (upper - lower)
+                })
+                .collect();
+            place.clear();
+            place.extend(leaders.iter().copied().zip(values.iter().copied()));
+            let value = self.run(&plan, |id| place.get(&id).copied().unwrap_or(f64::NAN));
+            if !value.is_finite() {
+                return None;
+            }
+            samples.push((values, value));
+        }
+        Some(Taken { leaders: leaders.to_vec(), samples })
+    }
+}
+
+/// The first half of the samples are corners of the box, the other half lie inside it (the
+/// fractional parts of multiples of irrational numbers fill it evenly).
+fn corner_or_inside(index: usize, which: usize) -> f64 {
+    if index < SEVERAL / 2 {
+        return if which < 32 { (index >> which & 1) as f64 } else { (index & 1) as f64 };
+    }
+    let step = (2.0 + 3.0 * which as f64).sqrt();
+    (index as f64 * step).fract()
+}

@@ -1,0 +1,141 @@
+//! Axes of one joint that coincide: a direction in which it cannot turn.
+
+use super::{Finding, Severity, Subject};
+use condyle_math::{Mat3, Vec3};
+use condyle_model::component::{Component, Source};
+use std::f64::consts::PI;
+
+/// Axes nearer than this to each other are nearly one.
+const NEARLY_PARALLEL: f64 = 5.0;
+
+/// Consecutive turns that stand at less than this from a right angle make a triple of Euler.
+const NEARLY_RIGHT: f64 = 0.5;
+
+/// One turn of a product, its axis in the frame of the joint when every turn stands at zero.
+struct Turn {
+    angle: Source,
+    axis: Vec3,
+}
+
+pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+    for named in subject.model.components() {
+        let Component::Product(product) = &named.component else { continue };
+        let set = &subject.model.joint_sets()[named.joint_set.index()].name;
+        let turns = turns(subject, &product.factors);
+        for pair in turns.windows(2) {
+            findings.extend(parallel(subject, set, &pair[0], &pair[1]));
+        }
+        for triple in turns.windows(3) {
+            findings.extend(singular(subject, set, triple));
+        }
+    }
+}
+
+/// The turns of a product that vary; fixed frames between them turn the axes after them.
+fn turns(subject: &Subject<'_>, factors: &[Source]) -> Vec<Turn> {
+    let mut frame = Mat3::IDENTITY;
+    let mut turns = vec![];
+    for factor in factors {
+        let Source::Output(id, _) = factor else { continue };
+        match &subject.model.components()[id.index()].component {
+            Component::Place(place) => frame = frame * place.child_in_parent.linear,
+            Component::Rotate(turn) => {
+                if subject.reach.leaders(turn.angle).is_empty() {
+                    let angle = subject.reach.at_rest(turn.angle);
+                    if angle.is_finite() {
+                        frame = frame * Mat3::rotation_about(turn.axis, angle.sin_cos());
+                    }
+                } else {
+                    turns.push(Turn { angle: turn.angle, axis: frame * turn.axis });
+                }
+            }
+            Component::Translate(_) => {}
+            // What turns in another way says nothing about axes after it.
+            _ => turns.clear(),
+        }
+    }
+    turns
+}
+
+/// The angle between two axes, whichever way they point, in degrees.
+fn between(a: Vec3, b: Vec3) -> f64 {
+    a.cross(b).norm().atan2(a.dot(b).abs()).to_degrees()
+}
+
+fn names(subject: &Subject<'_>, turns: &[&Turn]) -> Vec<String> {
+    let mut names: Vec<String> = vec![];
+    for turn in turns {
+        for &leader in subject.reach.leaders(turn.angle) {
+            let key = subject.key(leader);
+            if !names.contains(&key) {
+                names.push(key);
+            }
+        }
+    }
+    names
+}
+
+fn parallel(subject: &Subject<'_>, set: &str, a: &Turn, b: &Turn) -> Option<Finding> {
+    let angle = between(a.axis, b.axis);
+    // One coordinate that turns twice, or a follower with its leader, loses nothing.
+    let own = |turn: &Turn| subject.reach.leaders(turn.angle);
+    let shared = own(a).iter().any(|leader| own(b).contains(leader));
+    if angle >= NEARLY_PARALLEL || shared {
+        return None;
+    }
+    let names = names(subject, &[a, b]);
+    Some(Finding::new(
+        Severity::Warning,
+        "lint/parallel-axes",
+        names.iter().cloned(),
+        format!(
+            "two axes of joint `{set}` ({}) lie {}° apart: they do nearly the same",
+            super::listed(&names),
+            super::rounded(angle, 2)
+        ),
+        "choose axes that stand apart, or take one of the two out",
+    ))
+}
+
+/// Three turns whose outer axes come to lie on each other inside the range of the middle one.
+fn singular(subject: &Subject<'_>, set: &str, triple: &[Turn]) -> Option<Finding> {
+    let [a, m, c] = triple else { return None };
+    let right = |a: Vec3, b: Vec3| (90.0 - between(a, b)).abs() < NEARLY_RIGHT;
+    if !right(a.axis, m.axis) || !right(m.axis, c.axis) {
+        return None;
+    }
+    let leaders = [a, m, c].map(|turn| subject.reach.leaders(turn.angle));
+    if leaders[0] == leaders[1] || leaders[1] == leaders[2] || leaders[0] == leaders[2] {
+        return None;
+    }
+    // a · R(m, t) c = A cos t + B sin t, which is ±1 where the outer axes coincide.
+    let at = a.axis.dot(m.axis.cross(c.axis)).atan2(a.axis.dot(c.axis));
+    let taken = subject.reach.taken(m.angle)?;
+    let [least, greatest] = taken.extremes()?;
+    let (least, greatest) = (least.1, greatest.1);
+    if greatest - least > 4.0 * PI {
+        return None;
+    }
+    let slack = 1e-3;
+    let first = ((least - slack - at) / PI).ceil();
+    let hits = (0..5).map(|k| at + (first + f64::from(k)) * PI).filter(|&t| t <= greatest + slack);
+    let mut hits: Vec<f64> = hits.map(f64::to_degrees).collect();
+    hits.sort_by(|a, b| a.abs().total_cmp(&b.abs()).then(b.total_cmp(a)));
+    let shown = match hits[..] {
+        [] => return None,
+        [one, other, ..] if (one + other).abs() < 0.1 => format!("±{}", super::rounded(one, 1)),
+        [one, ..] => super::rounded(one, 1),
+    };
+    let names = names(subject, &[a, m, c]);
+    let middle = super::listed(&self::names(subject, &[m]));
+    Some(Finding::new(
+        Severity::Note,
+        "lint/singular-triple",
+        names,
+        format!(
+            "the three rotations of joint `{set}` lose a direction where {middle} makes {shown}°, \
+             which lies inside its range"
+        ),
+        "near that posture the outer two angles are not determined apart; read them together",
+    ))
+}

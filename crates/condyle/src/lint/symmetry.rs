@@ -1,0 +1,447 @@
+//! Left against right.
+//!
+//! Sides are told by names: `knee_r` and `knee_l`, `r_knee`, `RightKnee`, `knee.R`. A body is
+//! mirrored in a plane of its segments' own frames, mostly the one across the third axis; the plane
+//! that fits most pairs is taken, and where none fits most of them nothing is said about places and
+//! axes. A mirrored axis of rotation is turned over as well, so that an equal angle is an equal
+//! posture; a coordinate whose axis is not turned over counts backwards, and so should its range.
+
+use super::{Finding, Severity, Subject, length, real_range};
+use condyle_math::Vec3;
+use condyle_model::{CoordinateId, CoordinateKind, Jacobian, Model, Pose, SegmentId};
+use std::collections::HashMap;
+
+/// Joints of a scaled subject differ by a few millimetres, and mean it.
+const PLACES_DIFFER: f64 = 5e-3;
+
+/// Ranges that differ by less are rounded differently.
+const RANGES_DIFFER: f64 = 2e-3;
+
+/// Axes are copied from side to side, not measured.
+const AXES_DIFFER: f64 = 1.0;
+
+pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+    let model = subject.model;
+    let names: Vec<&str> = model.segments().iter().map(|s| s.name.as_str()).collect();
+    let ids: Vec<SegmentId> = model.segment_ids().collect();
+    let (pairs, alone) = paired(&names);
+    // Where one side hangs on a part that the other has not, their places cannot be compared.
+    let segments: Vec<[SegmentId; 2]> = pairs
+        .iter()
+        .map(|&[r, l]| [ids[r], ids[l]])
+        .filter(|&pair| alike_parents(model, pair))
+        .collect();
+    let (coordinates, alone_too) = coordinate_pairs(model);
+    missing(pairs.len(), &alone, "segment", findings);
+    let keys: Vec<&str> = alone_too.iter().map(|id| subject.keys[id.index()].as_str()).collect();
+    missing(coordinates.len(), &keys, "coordinate", findings);
+    let motions = Motions::new(subject);
+    let senses = match motions.plane(&segments) {
+        Some(plane) => {
+            motions.places(plane, &segments, findings);
+            motions.axes(plane, &coordinates, findings)
+        }
+        None => vec![None; coordinates.len()],
+    };
+    for (&pair, sense) in coordinates.iter().zip(&senses) {
+        findings.extend(ranges(subject, pair, *sense));
+    }
+    defaults(subject, &coordinates, &senses, findings);
+}
+
+/// The words for the sides, right ones first.
+const SIDES: [[&str; 2]; 5] =
+    [["r", "l"], ["R", "L"], ["right", "left"], ["Right", "Left"], ["RIGHT", "LEFT"]];
+
+/// Whether a name is of the right side, and its name on the other; none without a side.
+fn mirrored(name: &str) -> Option<(bool, String)> {
+    let mut right = None;
+    let mut text = String::with_capacity(name.len());
+    for piece in name.split_inclusive(['_', '.', '-', ' ', '/']) {
+        let word = piece.trim_end_matches(['_', '.', '-', ' ', '/']);
+        let found = SIDES.iter().find_map(|side| {
+            let own = side.iter().position(|s| *s == word)?;
+            Some((own == 0, side[1 - own]))
+        });
+        match found {
+            Some((own, other)) if right.is_none_or(|known| known == own) => {
+                right = Some(own);
+                text.push_str(other);
+                text.push_str(&piece[word.len()..]);
+            }
+            // Both sides in one name is neither.
+            Some(_) => return None,
+            None => text.push_str(piece),
+        }
+    }
+    if let Some(right) = right {
+        return Some((right, text));
+    }
+    for [own, other] in [["Right", "Left"], ["right", "left"]] {
+        if name.contains(own) != name.contains(other) {
+            let right = name.contains(own);
+            let (from, to) = if right { (own, other) } else { (other, own) };
+            return Some((right, name.replacen(from, to, 1)));
+        }
+    }
+    None
+}
+
+/// Positions of right and left, and names whose other side is missing.
+fn paired<'n>(names: &[&'n str]) -> (Vec<[usize; 2]>, Vec<&'n str>) {
+    let at: HashMap<&str, usize> = names.iter().enumerate().map(|(i, n)| (*n, i)).collect();
+    let (mut pairs, mut alone) = (vec![], vec![]);
+    for (index, name) in names.iter().enumerate() {
+        let Some((right, other)) = mirrored(name) else { continue };
+        match at.get(other.as_str()) {
+            Some(&left) if right => pairs.push([index, left]),
+            Some(_) => {}
+            None => alone.push(*name),
+        }
+    }
+    (pairs, alone)
+}
+
+/// As [`paired`], by joint set and name, or by name alone where the joint set has no side.
+fn coordinate_pairs(model: &Model) -> (Vec<[CoordinateId; 2]>, Vec<CoordinateId>) {
+    let set = |id: CoordinateId| &model.joint_sets()[model.coordinate(id).joint_set.index()].name;
+    let full: HashMap<String, CoordinateId> = model
+        .coordinate_ids()
+        .map(|id| (format!("{}/{}", set(id), model.coordinate(id).name), id))
+        .collect();
+    let bare: HashMap<&str, CoordinateId> =
+        model.coordinate_ids().map(|id| (model.coordinate(id).name.as_str(), id)).collect();
+    let (mut pairs, mut alone) = (vec![], vec![]);
+    for id in model.coordinate_ids() {
+        let name = &model.coordinate(id).name;
+        let by_name = mirrored(name);
+        let whole = mirrored(&format!("{}/{name}", set(id)));
+        let Some(right) = by_name.as_ref().or(whole.as_ref()).map(|(right, _)| *right) else {
+            continue;
+        };
+        let other = whole.and_then(|(_, name)| full.get(&name));
+        let other = other.or_else(|| by_name.and_then(|(_, name)| bare.get(name.as_str())));
+        match other {
+            Some(&left) if right => pairs.push([id, left]),
+            Some(_) => {}
+            None => alone.push(id),
+        }
+    }
+    (pairs, alone)
+}
+
+/// Whether two segments hang on one parent, or on the two sides of a pair.
+fn alike_parents(model: &Model, pair: [SegmentId; 2]) -> bool {
+    let [r, l] = pair.map(|id| model.segment(id).parent);
+    let name = |id: Option<SegmentId>| id.map(|id| model.segment(id).name.as_str());
+    r == l || name(r).and_then(mirrored).map(|(_, other)| other).as_deref() == name(l)
+}
+
+/// Names without their other side, in a model that otherwise has both.
+fn missing(pairs: usize, alone: &[&str], what: &str, findings: &mut Vec<Finding>) {
+    if alone.is_empty() || pairs < 3 * alone.len() {
+        return;
+    }
+    let names: Vec<String> = alone.iter().map(|&name| name.to_owned()).collect();
+    let (s, has) = if names.len() == 1 { ("", "has") } else { ("s", "have") };
+    findings.push(Finding::new(
+        Severity::Note,
+        "lint/side-missing",
+        names.iter().cloned(),
+        format!("{what}{s} {} {has} no other side, as {pairs} others have", super::listed(&names)),
+        "is a name misspelt, or is this side modelled in more detail?",
+    ));
+}
+
+/// How segments stand and move in their parents when every coordinate is 0.
+struct Motions<'s> {
+    subject: &'s Subject<'s>,
+    pose: Pose,
+    jacobian: Jacobian,
+}
+
+/// A vector in the mirror across one axis.
+fn reflected(v: Vec3, plane: usize) -> Vec3 {
+    let mut v = v.to_array();
+    v[plane] = -v[plane];
+    Vec3::from(v)
+}
+
+impl<'s> Motions<'s> {
+    fn new(subject: &'s Subject<'s>) -> Self {
+        let mut pose = Pose::new(&subject.program);
+        let mut jacobian = Jacobian::new(&subject.program);
+        let mut zero = subject.model.defaults();
+        for id in subject.model.coordinate_ids() {
+            if subject.kind(id) != CoordinateKind::Orientation {
+                zero[subject.model.stored_range(id)].fill(0.0);
+            }
+        }
+        // The buffers are made for this program.
+        let _ = subject.program.evaluate_with_jacobian(&zero, &mut pose, &mut jacobian);
+        Self { subject, pose, jacobian }
+    }
+
+    /// A segment's origin in its parent.
+    fn place(&self, id: SegmentId) -> Vec3 {
+        let parent = self.pose.frame(self.subject.model.segment(id).parent);
+        let gap = self.pose.segment(id).translation - parent.translation;
+        parent.linear.transpose() * gap
+    }
+
+    /// The axis that a pair's mirror stands across, if most pairs have one.
+    fn plane(&self, pairs: &[[SegmentId; 2]]) -> Option<usize> {
+        let misfit = |plane: usize| -> f64 {
+            let gap = |&[r, l]: &[SegmentId; 2]| {
+                (reflected(self.place(r), plane) - self.place(l)).norm().min(0.1)
+            };
+            pairs.iter().map(gap).sum()
+        };
+        // The third axis first: OpenSim's right.
+        let best = [2, 0, 1].into_iter().min_by(|&a, &b| misfit(a).total_cmp(&misfit(b)))?;
+        let fits = pairs.iter().filter(|pair| self.misplaced(best, **pair).is_none()).count();
+        (2 * fits > pairs.len()).then_some(best)
+    }
+
+    /// By how much the left joint stands elsewhere than in the mirror, if it does.
+    fn misplaced(&self, plane: usize, [right, left]: [SegmentId; 2]) -> Option<f64> {
+        let (r, l) = (self.place(right), self.place(left));
+        let gap = (reflected(r, plane) - l).norm();
+        (gap > PLACES_DIFFER.max(0.05 * r.norm())).then_some(gap)
+    }
+
+    fn places(&self, plane: usize, pairs: &[[SegmentId; 2]], findings: &mut Vec<Finding>) {
+        let name = |id: SegmentId| self.subject.model.segment(id).name.clone();
+        let mut differ: Vec<(f64, String)> = vec![];
+        for &[right, left] in pairs {
+            let Some(gap) = self.misplaced(plane, [right, left]) else { continue };
+            let same = (self.place(right) - self.place(left)).norm() < 1e-3;
+            if !same || gap < 0.01 {
+                differ.push((gap, name(left)));
+                continue;
+            }
+            findings.push(Finding::new(
+                Severity::Warning,
+                "lint/same-side",
+                [name(right), name(left)],
+                format!(
+                    "the joints of `{}` and `{}` stand in the same place of their parents: the left \
+                     one is {} from the mirror of the right one",
+                    name(right),
+                    name(left),
+                    length(gap)
+                ),
+                "turn the sign of the coordinate that points sideways",
+            ));
+        }
+        differ.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let Some((most, worst)) = differ.first() else { return };
+        findings.push(Finding::new(
+            Severity::Note,
+            "lint/uneven-places",
+            differ.iter().map(|(_, name)| name.clone()),
+            format!(
+                "{} of {} joints stand elsewhere than their other side's mirror; most of all that \
+                 of `{worst}`, by {}",
+                differ.len(),
+                pairs.len(),
+                length(*most)
+            ),
+            "subjects differ from side to side; a model made by hand should not",
+        ));
+    }
+
+    /// Unit direction of a coordinate in its parent: an axis of rotation, or a way.
+    fn direction(&self, id: CoordinateId) -> Option<Vec3> {
+        let model = self.subject.model;
+        let coordinate = model.coordinate(id);
+        let along = model.tangent_range(id).start as u32;
+        let moved = model.segment_ids().find(|&s| {
+            model.segment(s).joint_set == Some(coordinate.joint_set)
+                && self.subject.program.segment_directions(s).iter().any(|(d, _)| *d == along)
+        })?;
+        let parent = model.segment(moved).parent;
+        let velocity = |segment: SegmentId| {
+            let directions = self.subject.program.segment_directions(segment);
+            let twist = directions.iter().find(|(d, _)| *d == along)?.1;
+            let twist = self.jacobian.twist(twist);
+            let here = self.pose.segment(moved).translation;
+            Some((twist.angular, twist.velocity_at(here)))
+        };
+        let (mut angular, mut linear) = velocity(moved)?;
+        if let Some((a, l)) = parent.and_then(velocity) {
+            (angular, linear) = (angular - a, linear - l);
+        }
+        let v = if coordinate.kind == CoordinateKind::Translation { linear } else { angular };
+        let v = self.pose.frame(parent).linear.transpose() * v;
+        (v.norm() > 1e-6).then(|| v.normalized())
+    }
+
+    /// For each pair whether the left coordinate counts the same way; none where it is unknown.
+    fn axes(
+        &self,
+        plane: usize,
+        pairs: &[[CoordinateId; 2]],
+        findings: &mut Vec<Finding>,
+    ) -> Vec<Option<bool>> {
+        let mut odd = vec![];
+        let senses: Vec<Option<bool>> = pairs
+            .iter()
+            .map(|&[right, left]| {
+                let kind = self.subject.kind(right);
+                if kind != self.subject.kind(left) || kind == CoordinateKind::Orientation {
+                    return None;
+                }
+                let mirror = reflected(self.direction(right)?, plane);
+                let expected = if kind == CoordinateKind::Translation { mirror } else { -mirror };
+                let found = self.direction(left)?;
+                let (along, across) = (expected.dot(found), expected.cross(found).norm());
+                let angle = across.atan2(along.abs()).to_degrees();
+                if angle > AXES_DIFFER {
+                    odd.push((right, left, angle));
+                    return None;
+                }
+                Some(along > 0.0)
+            })
+            .collect();
+        // Where most axes are no mirror images the frames are not, and nothing is known.
+        let known = senses.iter().filter(|sense| sense.is_some()).count();
+        if known < 2 * odd.len() {
+            return vec![None; pairs.len()];
+        }
+        for (right, left, angle) in odd {
+            let (right, left) = (self.subject.key(right), self.subject.key(left));
+            findings.push(Finding::new(
+                Severity::Warning,
+                "lint/uneven-axes",
+                [right.clone(), left.clone()],
+                format!(
+                    "the axes of `{right}` and `{left}` are no mirror images: {}° apart",
+                    super::rounded(angle, 2)
+                ),
+                "mirror the axis: a sign is often forgotten",
+            ));
+        }
+        senses
+    }
+}
+
+fn ranges(
+    subject: &Subject<'_>,
+    [right, left]: [CoordinateId; 2],
+    sense: Option<bool>,
+) -> Option<Finding> {
+    let (r, l) = (real_range(subject.model, right)?, real_range(subject.model, left)?);
+    if subject.kind(right) != subject.kind(left) {
+        return None;
+    }
+    let near = |a: (f64, f64), b: (f64, f64)| {
+        (a.0 - b.0).abs() <= RANGES_DIFFER && (a.1 - b.1).abs() <= RANGES_DIFFER
+    };
+    let same = near(r, l);
+    let negated = near((-r.1, -r.0), l);
+    let good = match sense {
+        Some(true) => same,
+        Some(false) => negated,
+        None => same || negated,
+    };
+    if good {
+        return None;
+    }
+    let range = |id: CoordinateId, (lower, upper): (f64, f64)| {
+        format!(
+            "`{}` {} to {}",
+            subject.key(id),
+            subject.shown(id, lower),
+            subject.shown(id, upper)
+        )
+    };
+    let both = format!("{}, {}", range(right, r), range(left, l));
+    let message = match sense {
+        Some(true) if negated => format!("{both}: mirrored twice, as their axes are mirrored too"),
+        Some(false) if same => format!("{both}: the same although one counts backwards"),
+        _ => format!("{both}: the sides have different ranges"),
+    };
+    let enforced = [right, left].iter().any(|&id| subject.model.coordinate(id).range.enforced);
+    Some(Finding::new(
+        if enforced { Severity::Warning } else { Severity::Note },
+        "lint/uneven-ranges",
+        [subject.key(right), subject.key(left)],
+        message,
+        "give both sides one range, unless a subject's own was measured",
+    ))
+}
+
+/// One note about all defaults that differ: a model may rest in the middle of a stride.
+fn defaults(
+    subject: &Subject<'_>,
+    pairs: &[[CoordinateId; 2]],
+    senses: &[Option<bool>],
+    findings: &mut Vec<Finding>,
+) {
+    let mut differ: Vec<(f64, String)> = vec![];
+    for (&[right, left], sense) in pairs.iter().zip(senses) {
+        let [r, l] = [right, left].map(|id| subject.model.coordinate(id));
+        let kind = r.kind;
+        if r.follows.is_some() || kind != l.kind || kind == CoordinateKind::Orientation {
+            continue;
+        }
+        let (same, negated) =
+            ((r.default[0] - l.default[0]).abs(), (r.default[0] + l.default[0]).abs());
+        let gap = match sense {
+            Some(true) => same,
+            Some(false) => negated,
+            None => same.min(negated),
+        };
+        let visible = if kind == CoordinateKind::Translation { 1e-3 } else { 1f64.to_radians() };
+        if gap > visible {
+            let text = format!(
+                "`{}` {}, `{}` {}",
+                subject.key(right),
+                subject.shown(right, r.default[0]),
+                subject.key(left),
+                subject.shown(left, l.default[0])
+            );
+            differ.push((gap / visible, text));
+        }
+    }
+    differ.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let Some((_, worst)) = differ.first() else { return };
+    findings.push(Finding::new(
+        Severity::Note,
+        "lint/uneven-defaults",
+        [],
+        format!(
+            "{} of {} defaults differ from side to side; most of all {worst}",
+            differ.len(),
+            pairs.len()
+        ),
+        "fine for a model that rests in a stride; otherwise make them equal",
+    ));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::mirrored;
+
+    #[test]
+    fn sides_are_words_of_a_name() {
+        let cases = [
+            ("knee_angle_r", Some((true, "knee_angle_l"))),
+            ("knee_angle_r_beta", Some((true, "knee_angle_l_beta"))),
+            ("thigh.L", Some((false, "thigh.R"))),
+            ("l_knee", Some((false, "r_knee"))),
+            ("RightUpLeg", Some((true, "LeftUpLeg"))),
+            ("left_hip/flexion", Some((false, "right_hip/flexion"))),
+            ("hip_r/flexion_r", Some((true, "hip_l/flexion_l"))),
+            ("humerus", None),
+            ("lumbar", None),
+            ("r_to_l", None),
+        ];
+        for (name, expected) in cases {
+            let found = mirrored(name);
+            let found = found.as_ref().map(|(right, other)| (*right, other.as_str()));
+            assert_eq!(found, expected, "{name}");
+        }
+    }
+}

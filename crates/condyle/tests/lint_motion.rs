@@ -1,0 +1,192 @@
+//! Motions that break their model in one way each, with the frame and the amount.
+
+use condyle::formats::{AngleUnit, Table};
+use condyle::lint::motion::{MotionCheck, check};
+use condyle::lint::{Finding, Severity};
+use condyle::math::function::Function;
+use condyle::math::{Quat, Vec3};
+use condyle::model::model::{Closure, Condition};
+use condyle::{CoordinateKind, Model, ModelBuilder, Range};
+
+/// A thigh on a slide, and a knee whose patella follows it by 10 mm per radian.
+fn leg() -> ModelBuilder {
+    let mut b = ModelBuilder::new("leg");
+    let thigh = b.segment("thigh", None);
+    let shank = b.segment("shank", Some(thigh));
+    let patella = b.segment("patella", Some(thigh));
+    b.place_joint(shank, Vec3::new(0.0, -0.4, 0.0));
+    let slide = b.joint_set("slide");
+    let height = b.coordinate(slide, "height", CoordinateKind::Translation);
+    b.coordinate_mut(height).range = Range { enforced: false, ..Range::new(0.0, 1.0) };
+    let up = b.translate(slide, "up", height, Vec3::Y);
+    b.output(slide, thigh, up);
+    let (set, knee) = b.hinge("knee", shank, "flexion", Vec3::Z);
+    b.coordinate_mut(knee).range = Range::new(0.0, 120f64.to_radians());
+    let glide_set = b.joint_set("patella");
+    let glide = b.coordinate(glide_set, "glide", CoordinateKind::Translation);
+    let law = b.map(set, "law", knee, Function::linear(0.01, 0.0));
+    b.follow(glide, law);
+    let along = b.translate(glide_set, "along", glide, Vec3::X);
+    b.output(glide_set, patella, along);
+    b
+}
+
+fn model(b: ModelBuilder) -> Model {
+    b.build().expect("a model")
+}
+
+/// A motion at 100 Hz in degrees and metres.
+fn motion(columns: &[&str], rows: &[&[f64]]) -> Table {
+    Table {
+        columns: columns.iter().map(|c| (*c).to_owned()).collect(),
+        times: (0..rows.len()).map(|i| i as f64 / 100.0).collect(),
+        values: rows.concat(),
+        angle_unit: AngleUnit::Degrees,
+        ..Table::default()
+    }
+}
+
+fn codes(check: &MotionCheck) -> Vec<(Severity, &str)> {
+    check.findings.iter().map(|f: &Finding| (f.severity, f.code)).collect()
+}
+
+fn near(found: f64, expected: f64) {
+    assert!((found - expected).abs() < 1e-12, "found {found}, expected {expected}");
+}
+
+#[test]
+fn a_motion_that_holds() {
+    let rows: [&[f64]; 3] = [&[0.9, 0.0], &[1.0, 60.0], &[0.95, 120.0]];
+    let check = check(&model(leg()), &motion(&["height", "flexion"], &rows));
+    assert_eq!(check, MotionCheck { frames: 3, ..MotionCheck::default() });
+    assert!(check.holds());
+}
+
+#[test]
+fn frames_outside_ranges() {
+    let rows: [&[f64]; 6] =
+        [&[0.9, 10.0], &[0.9, -4.0], &[0.9, -9.0], &[1.0025, 20.0], &[0.9, 70.0], &[0.9, 120.5]];
+    let check = check(&model(leg()), &motion(&["height", "flexion"], &rows));
+    assert_eq!(
+        codes(&check),
+        [(Severity::Error, "motion/outside-range"), (Severity::Warning, "motion/outside-range")]
+    );
+    let frames: Vec<usize> = check.violations.iter().map(|v| v.frame).collect();
+    assert_eq!(frames, [1, 2, 3, 5]);
+    let knee = &check.outside[0];
+    assert_eq!((knee.frames, &knee.runs[..], knee.enforced), (3, &[[1, 2], [5, 5]][..], true));
+    assert_eq!(knee.worst.frame, 2);
+    near(knee.worst.time, 0.02);
+    near(knee.worst.value, -9f64.to_radians());
+    near(knee.worst.by, 9f64.to_radians());
+    near(knee.worst.limit, 0.0);
+    near(knee.worst.nearest, 0.0);
+    near(check.violations[3].nearest, 120f64.to_radians());
+    let height = &check.outside[1];
+    assert!(!height.enforced);
+    near(height.worst.by, 0.0025);
+    assert_eq!(height.source, "the model's range (declared, not enforced)");
+    assert!(check.findings[0].message.contains("most in frame 2 (0.02 s): -9°, 9° beyond 0°"));
+}
+
+#[test]
+fn a_source_is_cited() {
+    let mut b = leg();
+    let knee = b.coordinate_at(1).expect("the knee");
+    b.coordinate_mut(knee).source = Some("Norkin & White 2016".into());
+    let check = check(&model(b), &motion(&["height", "flexion"], &[&[0.9, 130.0]]));
+    assert_eq!(check.outside[0].source, "Norkin & White 2016 (enforced)");
+    // 10° above the limit, and the nearest value is the limit.
+    near(check.outside[0].worst.by, 10f64.to_radians());
+}
+
+#[test]
+fn columns_that_contradict_their_leaders() {
+    // 0.01 m per radian at 90° is 15.708 mm.
+    let law = 0.01 * 90f64.to_radians();
+    let rows: [&[f64]; 3] =
+        [&[0.9, 90.0, law], &[0.9, 90.0, law + 0.003], &[0.9, 90.0, law - 5e-5]];
+    let check = check(&model(leg()), &motion(&["height", "flexion", "glide"], &rows));
+    assert_eq!(codes(&check), [(Severity::Warning, "motion/coupled")]);
+    let said = &check.disagreements[0];
+    assert_eq!((said.frames, said.frame), (1, 1));
+    near(said.value, law + 0.003);
+    near(said.expected, law);
+}
+
+#[test]
+fn loops_that_open() {
+    let mut b = leg();
+    // A foot on a rail: the ankle stays where the straight leg put it.
+    let at = [(b.segment_at(1), Vec3::new(0.0, -0.4, 0.0)), (None, Vec3::new(0.0, -0.8, 0.0))];
+    b.closure(Closure { name: "rail".into(), condition: Condition::Points { at } });
+    let rows: [&[f64]; 3] = [&[0.0, 0.0], &[0.0, 0.1], &[0.0, 60.0]];
+    let check = check(&model(b), &motion(&["height", "flexion"], &rows));
+    assert_eq!(codes(&check), [(Severity::Warning, "motion/open-loop")]);
+    let open = &check.open_loops[0];
+    // A chord of 60° is the radius; that of 0.1° is 0.7 mm and does not count.
+    assert_eq!((open.frames, open.frame, open.shown().as_str()), (1, 2, "400 mm"));
+    near(open.metres, 0.4);
+}
+
+#[test]
+fn jumps_and_wraps() {
+    let mut b = ModelBuilder::new("top");
+    let top = b.segment("top", None);
+    b.hinge("spin", top, "spin", Vec3::Y);
+    let rows: [&[f64]; 6] = [&[170.0], &[179.0], &[-178.0], &[-100.0], &[f64::NAN], &[100.0]];
+    let check = check(&model(b), &motion(&["spin"], &rows));
+    let warnings = ["motion/blank", "motion/jump", "motion/wrap"];
+    let mut found: Vec<&str> = codes(&check).iter().map(|c| c.1).collect();
+    found.sort_unstable();
+    assert_eq!(found, warnings);
+    assert_eq!(check.blank, 1);
+    let jumps: Vec<_> = check.jumps.iter().map(|j| (j.frame, j.wrap)).collect();
+    // Nothing is known about the step over the blank cell.
+    assert_eq!(jumps, [(2, true), (3, false)]);
+    near(check.jumps[0].by, -357f64.to_radians());
+    near(check.jumps[1].by, 78f64.to_radians());
+}
+
+#[test]
+fn an_orientation_jumps_by_its_own_angle() {
+    let mut b = ModelBuilder::new("ball");
+    let ball = b.segment("ball", None);
+    b.ball_joint("hip", ball);
+    let quat =
+        |degrees: f64| Quat::from_axis_angle(Vec3::Z, degrees.to_radians()).to_array().to_vec();
+    // The same rotation with its sign turned is no jump.
+    let negated: Vec<f64> = quat(20.0).iter().map(|v| -v).collect();
+    let rows = [quat(10.0), negated, quat(95.0)];
+    let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+    let names = ["orientation.qx", "orientation.qy", "orientation.qz", "orientation.qw"];
+    let check = check(&model(b), &motion(&names, &rows));
+    assert_eq!(check.jumps.len(), 1, "{:?}", check.findings);
+    assert_eq!(check.jumps[0].frame, 2);
+    near(check.jumps[0].by, 75f64.to_radians());
+}
+
+#[test]
+fn columns_missing_and_unknown() {
+    let table = motion(&["flexion", "flexoin", "/forceset/soleus/activation"], &[&[5.0, 5.0, 0.1]]);
+    let check = check(&model(leg()), &table);
+    assert_eq!(
+        codes(&check),
+        [(Severity::Warning, "motion/missing"), (Severity::Warning, "motion/unknown")]
+    );
+    assert_eq!(check.missing.len(), 1, "the follower is not missed");
+    assert_eq!(check.unknown, ["flexoin"]);
+}
+
+#[test]
+fn degrees_taken_for_radians() {
+    let mut b = ModelBuilder::new("top");
+    let top = b.segment("top", None);
+    b.hinge("spin", top, "spin", Vec3::Y);
+    let mut table = motion(&["spin"], &[&[30.0], &[30.5]]);
+    table.angle_unit = AngleUnit::Unstated;
+    let model = model(b);
+    assert_eq!(codes(&check(&model, &table)), [(Severity::Warning, "motion/units")]);
+    table.angle_unit = AngleUnit::Degrees;
+    assert_eq!(codes(&check(&model, &table)), []);
+}

@@ -1,0 +1,45 @@
+//! Any text as a model document: no panic, errors that can be shown, and a model that is the same
+//! after it was written.
+#![no_main]
+
+use condyle_formats::document::{read, render, write};
+use condyle_model::{Mode, Pose, Program};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|data: &[u8]| {
+    let text = String::from_utf8_lossy(data);
+    // What is included is the text itself under other names, and nothing after a few.
+    let mut left = 3;
+    let mut include = |name: &str| {
+        left -= 1;
+        if left < 0 || name.len() > 20 { Err("nothing there".to_owned()) } else { Ok(text.to_string()) }
+    };
+    let model = match read(&text, &mut include) {
+        Ok(read) => read.value.model,
+        Err(errors) => {
+            assert!(!errors.is_empty());
+            assert!(render("text", &text, &errors).lines().count() >= errors.len());
+            return;
+        }
+    };
+    let written = write(&model);
+    let again = match read(&written, &mut |_| Err(String::new())) {
+        Ok(read) => read.value.model,
+        Err(errors) => panic!("{}\n{written}", render("written", &written, &errors)),
+    };
+    assert_eq!(model.coordinates(), again.coordinates());
+    assert_eq!(model.markers(), again.markers());
+    if model.components().len() > 200 || model.segments().len() > 200 {
+        return;
+    }
+    let pose = |model: &condyle_model::Model| {
+        let program = Program::compile(model);
+        let mut pose = Pose::new(&program);
+        program.evaluate(&model.defaults(), Mode::Open, &mut pose).expect("defaults fit");
+        model.segment_ids().map(|id| pose.segment(id).to_rows()).collect::<Vec<_>>()
+    };
+    for (a, b) in pose(&model).into_iter().flatten().zip(pose(&again).into_iter().flatten()) {
+        // Huge numbers and sharp curves magnify what rounding leaves of a turn or an axis.
+        assert!(!a.is_finite() || a.abs() > 1e6 || !b.is_finite() || (a - b).abs() < 1.0 + a.abs());
+    }
+});
