@@ -1,6 +1,6 @@
 //! Running the elementary steps of a chain.
 
-use super::program::{Program, Step};
+use super::instruction::{Code, Step};
 use crate::component::{Law, MOST_LAW_INPUTS};
 use condyle_math::{Affine, Mat3, Quat, Scalar, Twist, Vec3};
 
@@ -12,18 +12,11 @@ pub(super) trait Recorder<S> {
     /// A turn or slide by one scalar.
     fn motion(&mut self, twist: impl FnOnce() -> Twist<S>);
     /// A smooth law, about to be multiplied to `before`.
-    fn law(&mut self, program: &Program, law: u32, before: Affine<S>);
+    fn law(&mut self, code: &Code, law: u32, before: Affine<S>);
     /// A transform computed before, about to be multiplied to `before`.
-    fn transform(&mut self, program: &Program, register: u32, before: Affine<S>);
+    fn transform(&mut self, register: u32, before: Affine<S>);
     /// A power of the rotation of a transform computed before, about to be multiplied to `before`.
-    fn power(
-        &mut self,
-        program: &Program,
-        register: u32,
-        exponent: f64,
-        rotation: Mat3<S>,
-        before: Affine<S>,
-    );
+    fn power(&mut self, register: u32, exponent: f64, rotation: Mat3<S>, before: Affine<S>);
 }
 
 /// Records nothing: plain evaluation.
@@ -33,11 +26,11 @@ impl<S> Recorder<S> for Silent {
     #[inline(always)]
     fn motion(&mut self, _: impl FnOnce() -> Twist<S>) {}
     #[inline(always)]
-    fn law(&mut self, _: &Program, _: u32, _: Affine<S>) {}
+    fn law(&mut self, _: &Code, _: u32, _: Affine<S>) {}
     #[inline(always)]
-    fn transform(&mut self, _: &Program, _: u32, _: Affine<S>) {}
+    fn transform(&mut self, _: u32, _: Affine<S>) {}
     #[inline(always)]
-    fn power(&mut self, _: &Program, _: u32, _: f64, _: Mat3<S>, _: Affine<S>) {}
+    fn power(&mut self, _: u32, _: f64, _: Mat3<S>, _: Affine<S>) {}
 }
 
 /// A rotation raised to a power: exp(p·log R); plain for 1, 0 and -1.
@@ -54,7 +47,7 @@ pub(super) fn power<S: Scalar>(rotation: Mat3<S>, exponent: f64) -> Mat3<S> {
 /// The product of a base transform and the steps after it.
 #[inline(always)]
 pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
-    program: &Program,
+    code: &Code,
     steps: &[Step],
     base: Affine<S>,
     scalars: &[S],
@@ -66,7 +59,7 @@ pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
         let (r, origin) = (frame.linear, frame.translation);
         match *step {
             Step::Shift(offset) => frame = frame.shifted(offset.cast()),
-            Step::Fixed(index) => frame = frame * program.fixed[index as usize].cast(),
+            Step::Fixed(index) => frame = frame * code.fixed[index as usize].cast(),
             Step::TurnX(angle) => {
                 recorder.motion(|| Twist::rotation(r.x, origin));
                 frame.linear = r.rotated_x(scalars[angle as usize].sin_cos());
@@ -100,8 +93,8 @@ pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
                 recorder.motion(|| Twist::rotation(turned.z, origin));
             }
             Step::Law(index) => {
-                recorder.law(program, index, frame);
-                let call = &program.laws[index as usize];
+                recorder.law(code, index, frame);
+                let call = &code.laws[index as usize];
                 let mut inputs = [S::zero(); MOST_LAW_INPUTS];
                 for (value, &register) in inputs.iter_mut().zip(&call.inputs) {
                     *value = scalars[register as usize];
@@ -109,12 +102,12 @@ pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
                 frame = frame * call.law.transform(&inputs);
             }
             Step::Transform(register) => {
-                recorder.transform(program, register, frame);
+                recorder.transform(register, frame);
                 frame = frame * transforms[register as usize];
             }
             Step::Power { of, exponent } => {
                 let rotation = transforms[of as usize].linear;
-                recorder.power(program, of, exponent, rotation, frame);
+                recorder.power(of, exponent, rotation, frame);
                 frame.linear = r * power(rotation, exponent);
             }
         }

@@ -1,7 +1,10 @@
 //! From a checked model to its program.
 
 use super::derivative_plan::{DerivativePlan, plan};
-use super::program::{AnyLaw, CombineCall, Instruction, LawCall, NO_BASE, NO_BOUND, Program, Step};
+use super::instruction::{
+    AnyLaw, Code, CombineCall, Instruction, LawCall, NO_BASE, NO_BOUND, Step,
+};
+use super::program::Program;
 use crate::component::{Compensate, Component, Depend, Source};
 use crate::model::{ComponentId, CoordinateKind, Model, Node, SegmentId, dependency_order};
 use condyle_math::function::FunctionOfSeveral;
@@ -30,8 +33,15 @@ struct Compiler<'m> {
     needed: Vec<bool>,
 }
 
+impl Program {
+    /// Flattens a model. Models are checked when they are built, so this cannot fail.
+    pub fn compile(model: &Model) -> Self {
+        compile(model)
+    }
+}
+
 /// Flattens a model.
-pub(super) fn compile(model: &Model) -> Program {
+fn compile(model: &Model) -> Program {
     // A built model has no circle; an empty order for a wrong one would only pose nothing.
     let order = dependency_order(model).unwrap_or_default();
     let components = model.components.len();
@@ -39,18 +49,20 @@ pub(super) fn compile(model: &Model) -> Program {
         model,
         program: Program {
             stored: model.stored_len(),
-            scalars: model.stored_len(),
             segments: model.segments.len(),
-            transforms: model.segments.len(),
             constants: vec![],
-            instructions: vec![],
-            steps: vec![],
-            fixed: vec![],
-            functions: vec![],
-            combines: vec![],
-            laws: vec![],
             limits: vec![],
-            rows: vec![],
+            code: Code {
+                scalars: model.stored_len(),
+                transforms: model.segments.len(),
+                instructions: vec![],
+                steps: vec![],
+                fixed: vec![],
+                functions: vec![],
+                combines: vec![],
+                laws: vec![],
+                rows: vec![],
+            },
             plan: DerivativePlan::default(),
         },
         coordinates: model
@@ -78,7 +90,7 @@ pub(super) fn compile(model: &Model) -> Program {
             directions[model.stored_range(id).start] = Some(model.tangent_range(id).start as u32);
         }
     }
-    compiler.program.plan = plan(&compiler.program, model.tangent_len(), &directions);
+    compiler.program.plan = plan(&compiler.program.code, model.tangent_len(), &directions);
     compiler.program
 }
 
@@ -145,8 +157,8 @@ impl Compiler<'_> {
     }
 
     fn new_scalar(&mut self) -> u32 {
-        self.program.scalars += 1;
-        self.program.scalars as u32 - 1
+        self.program.code.scalars += 1;
+        self.program.code.scalars as u32 - 1
     }
 
     fn node(&mut self, node: Node) {
@@ -173,9 +185,9 @@ impl Compiler<'_> {
     }
 
     fn function(&mut self, function: condyle_math::function::Function, input: u32, output: u32) {
-        self.program.functions.push(function);
-        let function = self.program.functions.len() as u32 - 1;
-        self.program.instructions.push(Instruction::Function { function, input, output });
+        self.program.code.functions.push(function);
+        let function = self.program.code.functions.len() as u32 - 1;
+        self.program.code.instructions.push(Instruction::Function { function, input, output });
     }
 
     fn component(&mut self, id: ComponentId) {
@@ -213,8 +225,8 @@ impl Compiler<'_> {
                     self.compensations[id.index()] = Some(self.paths(compensate));
                 }
                 if self.readers[id.index()] > 1 {
-                    let register = self.program.transforms as u32;
-                    self.program.transforms += 1;
+                    let register = self.program.code.transforms as u32;
+                    self.program.code.transforms += 1;
                     let mut steps = vec![];
                     self.append(id, &mut steps);
                     self.chain(NO_BASE, steps, register);
@@ -246,8 +258,8 @@ impl Compiler<'_> {
                 let back = segment.joint_in_segment.linear.transpose();
                 self.fixed(Affine::from_rotation(back), &mut steps);
             }
-            *register = self.program.transforms as u32;
-            self.program.transforms += 1;
+            *register = self.program.code.transforms as u32;
+            self.program.code.transforms += 1;
             self.chain(NO_BASE, steps, *register);
         }
         (registers[0], registers[1])
@@ -269,7 +281,7 @@ impl Compiler<'_> {
         }
         let output = self.new_scalar();
         let [lower, upper] = bounds;
-        self.program.instructions.push(Instruction::Hold { passive, lower, upper, output });
+        self.program.code.instructions.push(Instruction::Hold { passive, lower, upper, output });
         Scalar::Register(output)
     }
 
@@ -279,7 +291,7 @@ impl Compiler<'_> {
         let inputs = [value, bound].map(Scalar::Register);
         let row = self.combine(&function, &inputs);
         let row = self.register(row);
-        self.program.rows.push(row);
+        self.program.code.rows.push(row);
     }
 
     /// Rows for the ranges of coordinates that follow others.
@@ -310,9 +322,9 @@ impl Compiler<'_> {
         }
         let inputs: Vec<u32> = inputs.iter().map(|&s| self.register(s)).collect();
         let output = self.new_scalar();
-        self.program.combines.push(CombineCall { function: function.clone(), inputs });
-        let function = self.program.combines.len() as u32 - 1;
-        self.program.instructions.push(Instruction::Combine { function, output });
+        self.program.code.combines.push(CombineCall { function: function.clone(), inputs });
+        let function = self.program.code.combines.len() as u32 - 1;
+        self.program.code.instructions.push(Instruction::Combine { function, output });
         Scalar::Register(output)
     }
 
@@ -382,14 +394,14 @@ impl Compiler<'_> {
                 self.register(scalar)
             })
             .collect();
-        self.program.laws.push(LawCall { law, inputs });
-        steps.push(Step::Law(self.program.laws.len() as u32 - 1));
+        self.program.code.laws.push(LawCall { law, inputs });
+        steps.push(Step::Law(self.program.code.laws.len() as u32 - 1));
     }
 
     /// Appends a fixed transform, merged with a fixed one before it and dropped if it is nothing.
     fn fixed(&mut self, transform: Affine, steps: &mut Vec<Step>) {
         let before = match steps.last() {
-            Some(Step::Fixed(index)) => Some(self.program.fixed[*index as usize]),
+            Some(Step::Fixed(index)) => Some(self.program.code.fixed[*index as usize]),
             Some(Step::Shift(offset)) => Some(Affine::from_translation(*offset)),
             _ => None,
         };
@@ -401,8 +413,8 @@ impl Compiler<'_> {
         } else if whole.linear == Mat3::IDENTITY {
             steps.push(Step::Shift(whole.translation));
         } else {
-            self.program.fixed.push(whole);
-            steps.push(Step::Fixed(self.program.fixed.len() as u32 - 1));
+            self.program.code.fixed.push(whole);
+            steps.push(Step::Fixed(self.program.code.fixed.len() as u32 - 1));
         }
     }
 
@@ -430,13 +442,13 @@ impl Compiler<'_> {
                 Instruction::BallAt { base, shift, orientation, output }
             }
             _ => {
-                let first = self.program.steps.len() as u32;
-                self.program.steps.extend(steps);
-                let end = self.program.steps.len() as u32;
+                let first = self.program.code.steps.len() as u32;
+                self.program.code.steps.extend(steps);
+                let end = self.program.code.steps.len() as u32;
                 Instruction::Chain { base, first, end, output }
             }
         };
-        self.program.instructions.push(instruction);
+        self.program.code.instructions.push(instruction);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Which numbers a Jacobian holds and how they are made, settled when a program is compiled.
 
-use super::program::{Instruction, NO_BASE, Program, Step};
+use super::instruction::{Code, Instruction, NO_BASE, Step};
 
 /// Where the running sum of a twist begins.
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +32,7 @@ pub(super) struct ScalarTerm {
     pub first: bool,
 }
 
-/// The sparse shape of all derivatives of a program.
+/// The sparse shape of all derivatives of a code.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DerivativePlan {
     pub tangents: usize,
@@ -77,19 +77,19 @@ impl DerivativePlan {
 /// `coordinate_directions` gives the first direction of each stored register that is a scalar
 /// coordinate, or of the first register of an orientation; `None` where a coordinate follows others.
 pub(super) fn plan(
-    program: &Program,
+    code: &Code,
     tangents: usize,
     coordinate_directions: &[Option<u32>],
 ) -> DerivativePlan {
     let mut plan = DerivativePlan { tangents, derivatives: 1, ..Default::default() };
     // (direction, slot) of every scalar register.
-    let mut scalars: Vec<Vec<(u32, u32)>> = vec![vec![]; program.scalars];
+    let mut scalars: Vec<Vec<(u32, u32)>> = vec![vec![]; code.scalars];
     for (register, direction) in coordinate_directions.iter().enumerate() {
         scalars[register].extend(direction.map(|d| (d, 0)));
     }
-    let mut transforms: Vec<Vec<(u32, u32)>> = vec![vec![]; program.transforms];
+    let mut transforms: Vec<Vec<(u32, u32)>> = vec![vec![]; code.transforms];
     let one = [0u32];
-    for instruction in &program.instructions {
+    for instruction in &code.instructions {
         match instruction {
             Instruction::Function { input, output, .. } => {
                 plan.scalar(&mut scalars, &[*input], *output);
@@ -99,7 +99,7 @@ pub(super) fn plan(
                 plan.scalar(&mut scalars, &[*passive], *output);
             }
             Instruction::Combine { function, output } => {
-                let inputs = &program.combines[*function as usize].inputs;
+                let inputs = &code.combines[*function as usize].inputs;
                 plan.scalar(&mut scalars, inputs, *output);
             }
             Instruction::BallAt { base, orientation, output, .. } => {
@@ -109,7 +109,7 @@ pub(super) fn plan(
             }
             Instruction::Chain { base, first, end, output } => {
                 let mut moving = plan.inherit(&transforms, *base);
-                for step in &program.steps[*first as usize..*end as usize] {
+                for step in &code.steps[*first as usize..*end as usize] {
                     match *step {
                         Step::Fixed(_) | Step::Shift(_) => {}
                         Step::TurnX(s)
@@ -121,7 +121,7 @@ pub(super) fn plan(
                         }
                         Step::Ball(s) => plan.ball(&mut moving, &scalars[s as usize]),
                         Step::Law(index) => {
-                            for input in &program.laws[index as usize].inputs {
+                            for input in &code.laws[index as usize].inputs {
                                 plan.unit(&mut moving, &scalars[*input as usize]);
                             }
                         }
@@ -136,8 +136,8 @@ pub(super) fn plan(
             }
         }
     }
-    plan.coordinate_entries = scalars[..program.stored].to_vec();
-    plan.row_entries = program.rows.iter().map(|&r| scalars[r as usize].clone()).collect();
+    plan.coordinate_entries = scalars[..coordinate_directions.len()].to_vec();
+    plan.row_entries = code.rows.iter().map(|&r| scalars[r as usize].clone()).collect();
     plan.entry_offsets.push(0);
     for list in transforms {
         plan.entries.extend(list);

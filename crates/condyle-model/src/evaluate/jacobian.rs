@@ -1,9 +1,10 @@
 //! How every segment moves with every direction of the coordinates.
 
 use super::chain::{Recorder, run_chain};
-use super::derivative_plan::{Start, Term};
+use super::derivative_plan::{DerivativePlan, Start, Term};
+use super::instruction::{Code, Instruction, NO_BASE};
 use super::pose::Pose;
-use super::program::{Instruction, Mode, NO_BASE, Program, SizeMismatch};
+use super::program::{Mode, Program, SizeMismatch};
 use super::rotation_rate::{exp_rate, log_rate};
 use crate::component::{Law, MOST_COMBINED, MOST_LAW_INPUTS};
 use crate::model::SegmentId;
@@ -65,6 +66,7 @@ struct Tape<'p, 'a> {
     counts: std::slice::Iter<'p, u32>,
     terms: std::slice::Iter<'p, Term>,
     scalars: &'a [f64],
+    plan: &'p DerivativePlan,
 }
 
 impl Tape<'_, '_> {
@@ -93,8 +95,8 @@ impl Recorder<f64> for Tape<'_, '_> {
         self.emit(twist);
     }
 
-    fn law(&mut self, program: &Program, law: u32, before: Affine) {
-        let call = &program.laws[law as usize];
+    fn law(&mut self, code: &Code, law: u32, before: Affine) {
+        let call = &code.laws[law as usize];
         let mut inputs = [Dual::<MOST_LAW_INPUTS>::constant(0.0); MOST_LAW_INPUTS];
         for (i, &register) in call.inputs.iter().enumerate() {
             inputs[i] = Dual::variable(self.scalars[register as usize], i);
@@ -115,17 +117,10 @@ impl Recorder<f64> for Tape<'_, '_> {
         }
     }
 
-    fn power(
-        &mut self,
-        program: &Program,
-        register: u32,
-        exponent: f64,
-        rotation: Mat3,
-        before: Affine,
-    ) {
+    fn power(&mut self, register: u32, exponent: f64, rotation: Mat3, before: Affine) {
         let turn = rotation.log();
         let raised = turn * exponent;
-        for &(_, twist) in program.plan.segment_entries(register as usize) {
+        for &(_, twist) in self.plan.segment_entries(register as usize) {
             let spin = self.twists[twist as usize].angular;
             // d exp(p·ρ) = J(p·ρ)·p·J(ρ)⁻¹·ω, with J the left Jacobian of SO(3).
             let moved = match exponent {
@@ -137,8 +132,8 @@ impl Recorder<f64> for Tape<'_, '_> {
         }
     }
 
-    fn transform(&mut self, program: &Program, register: u32, before: Affine) {
-        for &(_, twist) in program.plan.segment_entries(register as usize) {
+    fn transform(&mut self, register: u32, before: Affine) {
+        for &(_, twist) in self.plan.segment_entries(register as usize) {
             let inner = self.twists[twist as usize];
             self.emit(|| inner.transformed(before));
         }
@@ -165,7 +160,7 @@ impl Program {
         let mut scalar_terms = plan.scalar_terms.iter();
         let mut term_counts = plan.term_counts.iter();
         let mut terms = plan.terms.iter();
-        for instruction in &self.instructions {
+        for instruction in &self.code.instructions {
             let (base, output) = match *instruction {
                 Instruction::Chain { base, output, .. } => (base, output),
                 Instruction::BallAt { base, output, .. } => (base, output),
@@ -185,6 +180,7 @@ impl Program {
                 counts: term_counts.clone(),
                 terms: terms.clone(),
                 scalars: &pose.scalars,
+                plan,
             };
             let end = match *instruction {
                 Instruction::BallAt { shift, orientation, .. } => {
@@ -198,8 +194,8 @@ impl Program {
                     Affine::new(turned, at.translation)
                 }
                 Instruction::Chain { first, end, .. } => {
-                    let steps = &self.steps[first as usize..end as usize];
-                    run_chain(self, steps, from, &pose.scalars, &pose.transforms, &mut tape)
+                    let steps = &self.code.steps[first as usize..end as usize];
+                    run_chain(&self.code, steps, from, &pose.scalars, &pose.transforms, &mut tape)
                 }
                 _ => from,
             };
@@ -225,12 +221,12 @@ impl Program {
         match *instruction {
             Instruction::Function { function, input, output } => {
                 let x = pose.scalars[input as usize];
-                let (value, slope) = self.functions[function as usize].value_and_slope(x);
+                let (value, slope) = self.code.functions[function as usize].value_and_slope(x);
                 pose.scalars[output as usize] = value;
                 terms.iter().for_each(|term| add(term, slope));
             }
             Instruction::Combine { function, output } => {
-                let call = &self.combines[function as usize];
+                let call = &self.code.combines[function as usize];
                 let n = call.inputs.len();
                 let mut values = [Dual::<1>::constant(0.0); MOST_COMBINED];
                 for (value, &input) in values.iter_mut().zip(&call.inputs) {

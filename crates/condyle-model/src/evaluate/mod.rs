@@ -22,6 +22,8 @@ mod chain;
 mod closure;
 mod compile;
 mod derivative_plan;
+mod forward;
+mod instruction;
 mod jacobian;
 mod pose;
 mod program;

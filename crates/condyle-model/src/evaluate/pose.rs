@@ -21,11 +21,11 @@ impl<S: Scalar> Pose<S> {
     /// Buffers for this program.
     pub fn new(program: &Program) -> Self {
         Self {
-            scalars: vec![S::zero(); program.scalars],
-            transforms: vec![Affine::identity(); program.transforms],
+            scalars: vec![S::zero(); program.code.scalars],
+            transforms: vec![Affine::identity(); program.code.transforms],
             segments: program.segments,
             stored: program.stored,
-            rows: program.rows.clone(),
+            rows: program.code.rows.clone(),
         }
     }
 
