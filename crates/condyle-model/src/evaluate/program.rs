@@ -94,7 +94,8 @@ impl Program {
     ///
     /// Each is a number that a legal posture does not make negative, in radians or metres: the
     /// distance of a passive angle from the bound that its driver sets, or of a coordinate that
-    /// follows others from its range. [`Pose::limit_row`] has the number of the last evaluation.
+    /// follows others from its range. [`Pose::limit_row`](super::Pose::limit_row) has the
+    /// number of the last evaluation.
     pub fn limit_row_len(&self) -> usize {
         self.code.rows.len()
     }
