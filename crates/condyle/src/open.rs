@@ -177,6 +177,9 @@ pub fn table(path: &Path) -> Result<Read<Table>, OpenError> {
 /// # Errors
 /// [`OpenError`] with the path, and the line where there is one.
 pub fn ik_setup(path: &Path) -> Result<Read<setup::IkSetup>, OpenError> {
+    if ending(path) == "toml" {
+        return wrong(path, "a tracking setup", ".xml");
+    }
     let mut read = read_with(path, setup::from_bytes)?;
     if let setup::IkTasks::File(name) = &read.value.tasks {
         let tasks_path = beside(path, name);
