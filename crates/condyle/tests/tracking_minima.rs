@@ -63,6 +63,7 @@ fn sampled_frames_reach_the_independent_minimum() {
     for pair in pairs() {
         let name = format!("{} + {}", pair["model"], pair["trial"]);
         let (_, tracking) = run(&data, &pair, 1).unwrap_or_else(|| panic!("{name} cannot be read"));
+        let mut compared = 0;
         for frame in pair["at"].as_array().unwrap() {
             let time = frame["time"].as_f64().unwrap();
             // The minimum near OpenSim's own answer. (A start may find a slightly lower one with a
@@ -78,6 +79,7 @@ fn sampled_frames_reach_the_independent_minimum() {
             if (nearest.1 - time).abs() > 1e-4 {
                 continue;
             }
+            compared += 1;
             let answer = &tracking.answers[nearest.0];
             assert!(
                 answer.objective <= (1.001 * least).max(least + 1e-9),
@@ -87,6 +89,8 @@ fn sampled_frames_reach_the_independent_minimum() {
             assert!(answer.status.is_solved(), "{name} at {time} s: {:?}", answer.status);
             assert!(answer.closure_error < 1e-6, "{name} at {time} s: {}", answer.closure_error);
         }
+        // The script sampled six frames of every pair; none may slip by.
+        assert_eq!(compared, 6, "{name}");
         let mean = tracking.answers.iter().map(|a| a.objective).sum::<f64>()
             / tracking.answers.len() as f64;
         println!("{name}: {} frames, mean F {mean:.6e}", tracking.answers.len());

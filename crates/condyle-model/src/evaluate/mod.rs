@@ -15,8 +15,10 @@
 //! the world's origin add, so a segment's derivative is a sum over its path, and most segments
 //! share their ancestors' numbers without a copy.
 //!
-//! In [`Mode::Posed`] coordinates are first moved into their limits, so every pose is legal; in
-//! [`Mode::Open`] they are taken as given, and a solver gets the limits as rows.
+//! In [`Mode::Posed`] coordinates are first moved into their ranges, and passive ones between the
+//! bounds of their drivers. In [`Mode::Open`] they are taken as given, and a solver gets the limits
+//! as rows. The range of a coordinate that follows others is a row only: moving it would break what
+//! it follows.
 
 mod chain;
 mod closure;

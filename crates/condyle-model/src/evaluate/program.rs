@@ -8,7 +8,7 @@ use std::fmt;
 /// Whether limits move the coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// Every coordinate is first moved into its range: the pose is always legal.
+    /// Limits move the coordinates first: what is asked for is brought into its range.
     Posed,
     /// Coordinates are taken as given.
     Open,

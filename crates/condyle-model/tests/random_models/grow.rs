@@ -230,20 +230,12 @@ fn grow_component(
             transforms.push(b.pivot(set, &name, Pivot::new(angle, axis, centre).unwrap()));
         }
         7 => {
-            let column = ConstantCurvature {
-                angles: [any(dice), any(dice), any(dice)],
-                neutral: [0.2, -0.1, 0.05],
-                length: 0.2,
-            };
-            // Bounded inputs keep the arc away from its declared jump at a right angle.
-            let column = ConstantCurvature {
-                angles: column.angles.map(|angle| {
-                    let damped = Function::linear(0.1, 0.0);
-                    let name = format!("{name}_damped_{}", dice.below(1 << 30));
-                    b.map(set, &name, angle, damped)
-                }),
-                ..column
-            };
+            // Damped inputs keep the arc away from its declared jump at a right angle.
+            let angles = [any(dice), any(dice), any(dice)].map(|angle| {
+                let name = format!("{name}_damped_{}", dice.below(1 << 30));
+                b.map(set, &name, angle, Function::linear(0.1, 0.0))
+            });
+            let column = ConstantCurvature { angles, neutral: [0.2, -0.1, 0.05], length: 0.2 };
             transforms.push(b.constant_curvature(set, &name, column));
         }
         _ if !transforms.is_empty() => {
