@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 
 use crate::diagnostic::{Diagnostic, Error, Place, Read, Warnings};
 use crate::table::{AngleUnit, Table};
-use crate::text::{Line, check_size, decimal, decode, lines, number};
+use crate::text::{Line, check_size, decimal, lines, number, read_decoded};
 
 /// Reads a table.
 ///
@@ -91,10 +91,7 @@ pub fn read(text: &str) -> Result<Read<Table>, Error> {
 ///
 /// As [`read`].
 pub fn from_bytes(bytes: &[u8]) -> Result<Read<Table>, Error> {
-    let text = decode(bytes)?;
-    let mut read = read(&text.value)?;
-    read.warnings.splice(0..0, text.warnings);
-    Ok(read)
+    read_decoded(bytes, read)
 }
 
 /// Writes a table: `time`, then its columns, under a remark if its angles are in degrees.

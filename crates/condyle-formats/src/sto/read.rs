@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::header;
 use crate::diagnostic::{Diagnostic, Error, Place, Read, Warnings};
 use crate::table::Table;
-use crate::text::{Line, check_size, decode, last_line, lines, number};
+use crate::text::{Line, check_size, last_line, lines, number, read_decoded};
 
 /// How cells are told apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -143,10 +143,7 @@ pub fn read(text: &str) -> Result<Read<Table>, Error> {
 ///
 /// As [`read`].
 pub fn from_bytes(bytes: &[u8]) -> Result<Read<Table>, Error> {
-    let text = decode(bytes)?;
-    let mut read = read(&text.value)?;
-    read.warnings.splice(0..0, text.warnings);
-    Ok(read)
+    read_decoded(bytes, read)
 }
 
 /// The names, if no two are the same; a column without one is called after its number.

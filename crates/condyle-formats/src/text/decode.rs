@@ -75,6 +75,17 @@ fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Read<Cow<'_, str>> {
     read
 }
 
+/// Decodes bytes and reads the text, the decoder's warnings first.
+pub(crate) fn read_decoded<T>(
+    bytes: &[u8],
+    read: impl FnOnce(&str) -> Result<Read<T>, Error>,
+) -> Result<Read<T>, Error> {
+    let text = decode(bytes)?;
+    let mut read = read(&text.value)?;
+    read.warnings.splice(0..0, text.warnings);
+    Ok(read)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,8 +4,8 @@ mod decode;
 mod line;
 mod number;
 
-pub(crate) use decode::check_size;
 pub use decode::{MAX_TEXT_BYTES, decode};
+pub(crate) use decode::{check_size, read_decoded};
 pub(crate) use line::{Line, column_at, last_line, lines};
 pub use number::number;
 pub(crate) use number::{decimal, plain};

@@ -3,7 +3,7 @@
 use super::header::{self, Delimiter, Header};
 use crate::diagnostic::{Diagnostic, Error, Place, Read, Warnings};
 use crate::recording::{LengthUnit, Recording};
-use crate::text::{Line, check_size, decode, last_line, lines, number};
+use crate::text::{Line, check_size, last_line, lines, number, read_decoded};
 
 /// Choices that a TRC file itself cannot make.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -45,10 +45,7 @@ pub fn read(text: &str) -> Result<Read<Recording>, Error> {
 ///
 /// As [`read`].
 pub fn from_bytes(bytes: &[u8]) -> Result<Read<Recording>, Error> {
-    let text = decode(bytes)?;
-    let mut read = read(&text.value)?;
-    read.warnings.splice(0..0, text.warnings);
-    Ok(read)
+    read_decoded(bytes, read)
 }
 
 /// Reads a recording with choices.
