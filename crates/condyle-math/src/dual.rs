@@ -130,6 +130,11 @@ impl<const N: usize> Scalar for Dual<N> {
     }
 
     #[inline(always)]
+    fn value(self) -> f64 {
+        self.value
+    }
+
+    #[inline(always)]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
         self.map(root, 0.5 / root)

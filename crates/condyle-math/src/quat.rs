@@ -168,10 +168,12 @@ impl<S: Scalar> Quat<S> {
         Self { x: self.x * r, y: self.y * r, z: self.z * r, w: self.w * r }
     }
 
-    /// The rotation matrix; any length but zero is allowed and divided out.
+    /// The rotation matrix; the length is divided out, and without one it is the identity.
     #[inline(always)]
     pub fn to_mat3(self) -> Mat3<S> {
-        let s = S::from_f64(2.0) / self.dot(self);
+        let square = self.dot(self);
+        let least = S::from_f64(1e-300);
+        let s = S::from_f64(2.0) / square.select_less(least, S::one(), square);
         let (xs, ys, zs) = (self.x * s, self.y * s, self.z * s);
         let (wx, wy, wz) = (self.w * xs, self.w * ys, self.w * zs);
         let (xx, xy, xz) = (self.x * xs, self.x * ys, self.x * zs);

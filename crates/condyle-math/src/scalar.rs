@@ -5,8 +5,9 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A real number, or several at once, or one with its derivatives.
 ///
-/// Implemented for [`f64`] and [`Dual`](crate::Dual). The trait leaves room for lanes: nothing in
-/// it answers a question about the number with a single `bool`.
+/// Implemented for [`f64`] and [`Dual`](crate::Dual). Smooth kernels stay within what lanes can do,
+/// where no question about a number has a single answer; those that branch ask [`Scalar::value`]
+/// and run lane by lane.
 pub trait Scalar:
     Copy
     + Debug
@@ -24,6 +25,9 @@ pub trait Scalar:
 {
     /// A constant.
     fn from_f64(value: f64) -> Self;
+
+    /// The number without its derivatives, for kernels that branch.
+    fn value(self) -> f64;
 
     /// The square root; its derivative at 0 is infinite.
     fn sqrt(self) -> Self;
@@ -73,6 +77,11 @@ impl Scalar for f64 {
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         value
+    }
+
+    #[inline(always)]
+    fn value(self) -> f64 {
+        self
     }
 
     #[inline(always)]

@@ -23,6 +23,8 @@ impl Vec3<f64> {
     pub const Y: Self = Self::new(0.0, 1.0, 0.0);
     /// The direction of the third axis.
     pub const Z: Self = Self::new(0.0, 0.0, 1.0);
+    /// The three axes.
+    pub const UNITS: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
     /// The same vector as constants of another scalar.
     #[inline(always)]

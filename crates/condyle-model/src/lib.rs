@@ -47,7 +47,7 @@ mod position;
 
 pub use component::{Component, Source};
 pub use evaluate::{Jacobian, Mode, Pose, Program, SizeMismatch};
-pub use limit::Range;
+pub use limit::{Cone, ConeError, ConePoint, Legal, Projected, Projection, Range};
 pub use model::{
     Closure, Coordinate, CoordinateId, CoordinateKind, Finding, JointSet, JointSetId, Marker,
     Model, ModelBuilder, NameError, Segment, SegmentId, Severity, UpAxis,

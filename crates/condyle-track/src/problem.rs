@@ -130,6 +130,9 @@ impl Problem for FrameProblem<'_, '_> {
         }
         let scale = 2.0 * self.marker_scale();
         for (group, moments) in tracker.groups.iter().zip(&self.buffers.moments) {
+            if group.deforms {
+                continue;
+            }
             for (position, &(row, twist)) in group.entries.iter().enumerate() {
                 let twist = self.jacobian.twist(twist);
                 let (force, torque) = moments.momentum(twist);
@@ -141,6 +144,7 @@ impl Problem for FrameProblem<'_, '_> {
                 }
             }
         }
+        self.add_deforming(local, scale);
         for task in &tracker.tasks.coordinates {
             let Some(target) = task.target.at(self.frame) else { continue };
             let off = self.pose.coordinate(tracker.model, task.coordinate)[0] - target;
@@ -194,6 +198,29 @@ impl FrameProblem<'_, '_> {
                 if column <= row {
                     local.hessian[row * n + column] +=
                         weight * slope * self.jacobian.derivative(other_slot);
+                }
+            }
+        }
+    }
+
+    /// Markers of segments below a scale or a shear, one by one.
+    fn add_deforming(&self, local: &mut LocalModel, scale: f64) {
+        let tracker = self.tracker;
+        let n = tracker.unknown_len();
+        for (i, marker) in tracker.markers.iter().enumerate() {
+            let Some(group) = marker.group.map(|group| &tracker.groups[group]) else { continue };
+            let weight = scale * self.buffers.weights[i];
+            if !group.deforms || weight <= 0.0 {
+                continue;
+            }
+            let (point, error) = (self.buffers.points[i], self.buffers.errors[i]);
+            let velocity = |twist| self.jacobian.velocity_at(&tracker.program, twist, point);
+            for (position, &(row, twist)) in group.entries.iter().enumerate() {
+                let along = velocity(twist) * weight;
+                local.gradient[row as usize] += along.dot(error);
+                let line = &mut local.hessian[row as usize * n..(row as usize + 1) * n];
+                for &(column, other) in &group.entries[..=position] {
+                    line[column as usize] += along.dot(velocity(other));
                 }
             }
         }

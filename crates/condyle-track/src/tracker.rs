@@ -24,6 +24,8 @@ pub(crate) struct PlacedMarker {
 pub(crate) struct Group {
     /// (unknown, twist), sorted by unknown.
     pub entries: Vec<(u32, u32)>,
+    /// Whether the segment hangs below a scale or a shear, where moments do not add up.
+    pub deforms: bool,
 }
 
 /// One model and what is asked of it; constant, and shared by all threads.
@@ -121,7 +123,8 @@ impl<'m> Tracker<'m> {
                         let unknown = self.unknowns[direction as usize];
                         (unknown != FIXED).then_some((unknown, twist))
                     });
-                    self.groups.push(Group { entries: entries.collect() });
+                    let deforms = self.program.deforms(segment);
+                    self.groups.push(Group { entries: entries.collect(), deforms });
                     self.groups.len() - 1
                 })
             });

@@ -1,8 +1,8 @@
 //! The pieces that joint sets are made of.
 //!
 //! A component reads scalars (angles in radians, distances in metres), orientations or transforms
-//! and makes scalars or one transform of them. Its formula stands at the top of its file. All
-//! components here are smooth: run on [`Dual`](condyle_math::Dual) numbers they yield their exact
+//! and makes scalars or one transform of them. Its formula stands at the top of its file. Nearly all
+//! components are smooth: run on [`Dual`](condyle_math::Dual) numbers they yield their exact
 //! derivative, and the generator of a transform T(x) is the twist Ṫ·T⁻¹ in the frame it maps to.
 //!
 //! | component | in → out |
@@ -10,14 +10,20 @@
 //! | [`Map`] | scalar → scalars, one function each |
 //! | [`Combine`] | scalars → scalar |
 //! | [`Depend`] | driver, passive → passive, held between bounds that the driver sets |
+//! | [`JointCone`] | angles of a ball joint, or its orientation → the legal ones |
+//! | [`Contact`] | where a bone is → the two turns that put it on an ellipsoid |
 //! | [`Rotate`] | angle → rotation about a fixed axis |
 //! | [`Pivot`] | angle → rotation about an axis whose centre moves |
 //! | [`Translate`] | distance → translation along a fixed axis |
 //! | [`Ball`] | orientation → rotation |
 //! | [`Place`] | nothing → a fixed transform |
+//! | [`Scale`] | factor → a scale: everywhere, along an axis, or keeping the volume |
+//! | [`Shear`] | amount → layers that slide over each other |
+//! | [`Curve`] | parameter → a place on a curve, turning with it or not |
 //! | [`Ellipsoid`] | three angles → a frame that glides on an ellipsoid |
 //! | [`ConstantCurvature`] | three angles → the end of an arc of fixed length |
 //! | [`Compensate`] | motions of ancestors → the rotation that undoes them |
+//! | [`Custom`] | scalars → whatever a user's law makes of them |
 //! | [`Product`] | transforms → their product |
 //!
 //! To add one: a file here with its struct and its formula, a variant of [`Component`], its ports
@@ -26,8 +32,12 @@
 
 mod ball;
 mod combine;
+mod cone;
 mod compensate;
 mod constant_curvature;
+mod contact;
+mod curve;
+mod custom;
 mod depend;
 mod ellipsoid;
 mod map;
@@ -35,19 +45,27 @@ mod pivot;
 mod place;
 mod product;
 mod rotate;
+mod scale;
+pub(crate) mod shear;
 mod translate;
 
 pub use ball::Ball;
 pub use combine::Combine;
 pub use compensate::Compensate;
+pub use cone::{JointCone, Swinging};
 pub use constant_curvature::ConstantCurvature;
+pub use contact::{Contact, ContactPair, Glide, Gliding};
+pub use curve::{Curve, Heading};
+pub use custom::{Custom, ErasedLaw, LawDual, Parameters, Registry};
 pub use depend::Depend;
-pub use ellipsoid::Ellipsoid;
+pub use ellipsoid::{Ellipsoid, SurfaceAxis};
 pub use map::Map;
 pub use pivot::{Centre, Pivot, PivotError};
 pub use place::Place;
 pub use product::Product;
 pub use rotate::Rotate;
+pub use scale::{Along, Scale};
+pub use shear::Shear;
 pub use translate::Translate;
 
 use crate::position::{ComponentId, CoordinateId};
@@ -88,6 +106,10 @@ pub enum Component {
     Combine(Combine),
     /// A scalar held between bounds that another sets.
     Depend(Depend),
+    /// A ball joint held inside a cone.
+    Cone(JointCone),
+    /// A bone put on an ellipsoid.
+    Contact(Contact),
     /// Rotation about a fixed axis.
     Rotate(Rotate),
     /// Rotation about an axis whose centre moves.
@@ -104,6 +126,14 @@ pub enum Component {
     ConstantCurvature(ConstantCurvature),
     /// The rotation that undoes what ancestors did.
     Compensate(Compensate),
+    /// Growing and shrinking.
+    Scale(Scale),
+    /// Layers sliding over each other.
+    Shear(Shear),
+    /// Motion along a curve.
+    Curve(Curve),
+    /// A user's law.
+    Custom(Custom),
     /// Product of transforms.
     Product(Product),
 }
@@ -115,6 +145,8 @@ impl Component {
             Self::Map(_) => "map",
             Self::Combine(_) => "combine",
             Self::Depend(_) => "depend",
+            Self::Cone(_) => "cone",
+            Self::Contact(_) => "contact",
             Self::Rotate(_) => "rotate",
             Self::Pivot(_) => "pivot",
             Self::Translate(_) => "translate",
@@ -123,14 +155,18 @@ impl Component {
             Self::Ellipsoid(_) => "ellipsoid",
             Self::ConstantCurvature(_) => "constant_curvature",
             Self::Compensate(_) => "compensate",
+            Self::Scale(_) => "scale",
+            Self::Shear(_) => "shear",
+            Self::Curve(_) => "curve",
+            Self::Custom(_) => "custom",
             Self::Product(_) => "product",
         }
     }
 
     /// The inputs: the name and type of each port, and where it is connected.
     ///
-    /// A [`Compensate`] names segments and has no ports: what it reads are their motions, which
-    /// [`Model::reads`](crate::Model::reads) finds.
+    /// A [`Compensate`] names segments and has no ports, and a [`Contact`] reads the motions on the
+    /// way to its surface beside its ports: [`Model::reads`](crate::Model::reads) finds them.
     pub fn inputs(&self) -> Vec<(&'static str, PortType, Source)> {
         use PortType::{Orientation, Scalar, Transform};
         let three = |names: [&'static str; 3], sources: [Source; 3]| {
@@ -140,6 +176,16 @@ impl Component {
             Self::Map(c) => vec![("input", Scalar, c.input)],
             Self::Combine(c) => c.inputs.iter().map(|&s| ("inputs", Scalar, s)).collect(),
             Self::Depend(c) => vec![("passive", Scalar, c.passive), ("driver", Scalar, c.driver)],
+            Self::Cone(c) => match &c.of {
+                Swinging::Angles(s, _) => s.iter().map(|&s| ("angles", Scalar, s)).collect(),
+                Swinging::Directions(s, _) => s.iter().map(|&s| ("angles", Scalar, s)).collect(),
+                Swinging::Orientation(s) => vec![("orientation", Orientation, *s)],
+            },
+            Self::Contact(c) => {
+                let before = c.before.map(|s| ("before", Transform, s));
+                let drivers = c.drivers.iter().map(|&s| ("drivers", Scalar, s));
+                before.into_iter().chain(drivers).collect()
+            }
             Self::Rotate(c) => vec![("angle", Scalar, c.angle)],
             Self::Pivot(c) => vec![("angle", Scalar, c.angle)],
             Self::Translate(c) => vec![("distance", Scalar, c.distance)],
@@ -147,6 +193,10 @@ impl Component {
             Self::Place(_) | Self::Compensate(_) => vec![],
             Self::Ellipsoid(c) => three(["about_x", "about_y", "about_z"], c.angles),
             Self::ConstantCurvature(c) => three(["about_x", "about_z", "about_y"], c.angles),
+            Self::Scale(c) => vec![("factor", Scalar, c.factor)],
+            Self::Shear(c) => vec![("amount", Scalar, c.amount)],
+            Self::Curve(c) => vec![("parameter", Scalar, c.parameter)],
+            Self::Custom(c) => c.inputs.iter().map(|&s| ("inputs", Scalar, s)).collect(),
             Self::Product(c) => c.factors.iter().map(|&s| ("factors", Transform, s)).collect(),
         }
     }
@@ -156,6 +206,11 @@ impl Component {
         match self {
             Self::Map(c) => (PortType::Scalar, c.functions.len()),
             Self::Combine(_) | Self::Depend(_) => (PortType::Scalar, 1),
+            Self::Cone(c) => match c.of {
+                Swinging::Angles(..) => (PortType::Scalar, 3),
+                Swinging::Directions(..) => (PortType::Scalar, 2),
+                Swinging::Orientation(_) => (PortType::Orientation, 1),
+            },
             _ => (PortType::Transform, 1),
         }
     }
@@ -165,6 +220,11 @@ impl Component {
 pub trait Law {
     /// The transform at these inputs, in the order of [`Component::inputs`].
     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S>;
+
+    /// Whether the transform keeps lengths and angles at all inputs.
+    fn is_rigid(&self) -> bool {
+        true
+    }
 }
 
 /// The most inputs that a [`Law`] may have.

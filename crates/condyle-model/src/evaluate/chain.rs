@@ -1,7 +1,7 @@
 //! Running the elementary steps of a chain.
 
 use super::instruction::{Code, Step};
-use crate::component::{Law, MOST_LAW_INPUTS};
+use crate::component::{Law, MOST_LAW_INPUTS, shear};
 use condyle_math::{Affine, Mat3, Quat, Scalar, Twist, Vec3};
 
 /// Hears of every elementary motion while a chain runs.
@@ -9,8 +9,16 @@ use condyle_math::{Affine, Mat3, Quat, Scalar, Twist, Vec3};
 /// The twists are those of the chain's base frame (the world, for segments), per unit of the scalar
 /// that moves.
 pub(super) trait Recorder<S> {
-    /// A turn or slide by one scalar.
-    fn motion(&mut self, twist: impl FnOnce() -> Twist<S>);
+    /// A turn or slide by one scalar in `frame`: as seen from there, and, for a rigid frame, as seen
+    /// from the base.
+    fn motion(
+        &mut self,
+        frame: Affine<S>,
+        inside: impl FnOnce() -> Twist<S>,
+        outside: impl FnOnce() -> Twist<S>,
+    );
+    /// A scale or shear by one scalar in `frame`: the generator of its linear part there.
+    fn deformation(&mut self, frame: Affine<S>, rate: impl FnOnce() -> Mat3);
     /// A smooth law, about to be multiplied to `before`.
     fn law(&mut self, code: &Code, law: u32, before: Affine<S>);
     /// A transform computed before, about to be multiplied to `before`.
@@ -24,7 +32,15 @@ pub(super) struct Silent;
 
 impl<S> Recorder<S> for Silent {
     #[inline(always)]
-    fn motion(&mut self, _: impl FnOnce() -> Twist<S>) {}
+    fn motion(
+        &mut self,
+        _: Affine<S>,
+        _: impl FnOnce() -> Twist<S>,
+        _: impl FnOnce() -> Twist<S>,
+    ) {
+    }
+    #[inline(always)]
+    fn deformation(&mut self, _: Affine<S>, _: impl FnOnce() -> Mat3) {}
     #[inline(always)]
     fn law(&mut self, _: &Code, _: u32, _: Affine<S>) {}
     #[inline(always)]
@@ -61,26 +77,31 @@ pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
             Step::Shift(offset) => frame = frame.shifted(offset.cast()),
             Step::Fixed(index) => frame = frame * code.fixed[index as usize].cast(),
             Step::TurnX(angle) => {
-                recorder.motion(|| Twist::rotation(r.x, origin));
+                let turn = || Twist::rotation(Vec3::X.cast(), Vec3::zero());
+                recorder.motion(frame, turn, || Twist::rotation(r.x, origin));
                 frame.linear = r.rotated_x(scalars[angle as usize].sin_cos());
             }
             Step::TurnY(angle) => {
-                recorder.motion(|| Twist::rotation(r.y, origin));
+                let turn = || Twist::rotation(Vec3::Y.cast(), Vec3::zero());
+                recorder.motion(frame, turn, || Twist::rotation(r.y, origin));
                 frame.linear = r.rotated_y(scalars[angle as usize].sin_cos());
             }
             Step::TurnZ(angle) => {
-                recorder.motion(|| Twist::rotation(r.z, origin));
+                let turn = || Twist::rotation(Vec3::Z.cast(), Vec3::zero());
+                recorder.motion(frame, turn, || Twist::rotation(r.z, origin));
                 frame.linear = r.rotated_z(scalars[angle as usize].sin_cos());
             }
             Step::Turn { axis, angle } => {
                 let axis: Vec3<S> = axis.cast();
-                recorder.motion(|| Twist::rotation(r * axis, origin));
+                let inside = || Twist::rotation(axis, Vec3::zero());
+                recorder.motion(frame, inside, || Twist::rotation(r * axis, origin));
                 let turn = Mat3::rotation_about(axis, scalars[angle as usize].sin_cos());
                 frame.linear = r * turn;
             }
             Step::Slide { axis, distance } => {
                 let along = r * axis.cast();
-                recorder.motion(|| Twist::translation(along));
+                let inside = || Twist::translation(axis.cast());
+                recorder.motion(frame, inside, || Twist::translation(along));
                 frame.translation = origin + along * scalars[distance as usize];
             }
             Step::Ball(orientation) => {
@@ -88,9 +109,21 @@ pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
                 let q = [scalars[q], scalars[q + 1], scalars[q + 2], scalars[q + 3]];
                 frame.linear = r * Quat::from(q).to_mat3();
                 let turned = frame.linear;
-                recorder.motion(|| Twist::rotation(turned.x, origin));
-                recorder.motion(|| Twist::rotation(turned.y, origin));
-                recorder.motion(|| Twist::rotation(turned.z, origin));
+                for (unit, axis) in Vec3::UNITS.into_iter().zip([turned.x, turned.y, turned.z]) {
+                    let inside = || Twist::rotation(unit.cast(), Vec3::zero());
+                    recorder.motion(frame, inside, || Twist::rotation(axis, origin));
+                }
+            }
+            Step::Stretch { along, factor } => {
+                let (along, factor) = (code.scales[along as usize], scalars[factor as usize]);
+                recorder.deformation(frame, || along.rate(factor.value()));
+                frame.linear = r * along.matrix(factor);
+            }
+            Step::Shear { directions, amount } => {
+                let [along, across] = code.shears[directions as usize];
+                let amount = scalars[amount as usize];
+                recorder.deformation(frame, || shear::rate(along, across, amount.value()));
+                frame.linear = r * shear::matrix(along, across, amount);
             }
             Step::Law(index) => {
                 recorder.law(code, index, frame);
@@ -99,7 +132,7 @@ pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
                 for (value, &register) in inputs.iter_mut().zip(&call.inputs) {
                     *value = scalars[register as usize];
                 }
-                frame = frame * call.law.transform(&inputs);
+                frame = frame * call.law.transform(&inputs[..call.inputs.len()]);
             }
             Step::Transform(register) => {
                 recorder.transform(register, frame);

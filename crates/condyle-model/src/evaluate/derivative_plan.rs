@@ -1,6 +1,7 @@
 //! Which numbers a Jacobian holds and how they are made, settled when a program is compiled.
 
 use super::instruction::{Code, Instruction, NO_BASE, Step};
+use crate::component::Swinging;
 
 /// Where the running sum of a twist begins.
 #[derive(Clone, Copy, Debug)]
@@ -25,8 +26,8 @@ pub(super) struct Term {
 /// One term of a scalar's derivative: ∂f/∂input · ∂input/∂direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ScalarTerm {
-    /// Position of the input among those of the function.
-    pub input: u32,
+    /// Position among the slopes that the instruction computes.
+    pub slope: u32,
     pub from: u32,
     pub to: u32,
     pub first: bool,
@@ -44,6 +45,8 @@ pub(super) struct DerivativePlan {
     /// For each scalar instruction in order, how many terms it has.
     pub scalar_counts: Vec<u32>,
     pub scalar_terms: Vec<ScalarTerm>,
+    /// How many scalar terms belong to instructions that are complete.
+    ended: u32,
     /// For each transform register its (direction, twist) pairs, sorted by direction.
     entries: Vec<(u32, u32)>,
     entry_offsets: Vec<u32>,
@@ -51,7 +54,16 @@ pub(super) struct DerivativePlan {
     coordinate_entries: Vec<Vec<(u32, u32)>>,
     /// For each limit row its (direction, derivative slot) pairs.
     row_entries: Vec<Vec<(u32, u32)>>,
+    /// Which transform registers are not rigid.
+    pub deforming: Vec<bool>,
+    /// For each twist the slot of its strain, or [`RIGID`]; empty where no twist has one.
+    strain_slots: Vec<u32>,
+    pub strains: usize,
 }
+
+/// Marks a twist without a strain.
+pub(super) const RIGID: u32 = u32::MAX;
+
 
 impl DerivativePlan {
     /// The directions that move a segment, with their twists.
@@ -59,6 +71,15 @@ impl DerivativePlan {
     pub(super) fn segment_entries(&self, register: usize) -> &[(u32, u32)] {
         let [from, to] = [register, register + 1].map(|i| self.entry_offsets[i] as usize);
         &self.entries[from..to]
+    }
+
+    /// The slot of a twist's strain, if it has one.
+    #[inline(always)]
+    pub(super) fn strain_slot(&self, twist: u32) -> Option<usize> {
+        match self.strain_slots.get(twist as usize) {
+            Some(&slot) if slot != RIGID => Some(slot as usize),
+            _ => None,
+        }
     }
 
     /// The directions that move a limit row, with the slots of its derivatives.
@@ -74,49 +95,101 @@ impl DerivativePlan {
 
 /// Plans the derivatives of a program whose instructions are complete.
 ///
-/// `coordinate_directions` gives the first direction of each stored register that is a scalar
-/// coordinate, or of the first register of an orientation; `None` where a coordinate follows others.
+/// `directions` gives the register of each free coordinate (the first one of an orientation) with its
+/// (first) direction.
 pub(super) fn plan(
     code: &Code,
+    stored: usize,
     tangents: usize,
-    coordinate_directions: &[Option<u32>],
+    directions: &[(u32, u32)],
 ) -> DerivativePlan {
-    let mut plan = DerivativePlan { tangents, derivatives: 1, ..Default::default() };
+    let mut plan = DerivativePlan {
+        tangents,
+        derivatives: 1,
+        deforming: vec![false; code.transforms],
+        ..Default::default()
+    };
     // (direction, slot) of every scalar register.
     let mut scalars: Vec<Vec<(u32, u32)>> = vec![vec![]; code.scalars];
-    for (register, direction) in coordinate_directions.iter().enumerate() {
-        scalars[register].extend(direction.map(|d| (d, 0)));
+    for &(register, direction) in directions {
+        scalars[register as usize].push((direction, 0));
     }
     let mut transforms: Vec<Vec<(u32, u32)>> = vec![vec![]; code.transforms];
     let one = [0u32];
     for instruction in &code.instructions {
         match instruction {
             Instruction::Function { input, output, .. } => {
-                plan.scalar(&mut scalars, &[*input], *output);
+                let inputs = [scalars[*input as usize].clone()];
+                scalars[*output as usize] = plan.scalar(0, &inputs);
+                plan.end_scalar();
             }
             Instruction::Hold { passive, output, .. } => {
                 // Derivatives are those of open mode, where nothing is held.
-                plan.scalar(&mut scalars, &[*passive], *output);
+                let inputs = [scalars[*passive as usize].clone()];
+                scalars[*output as usize] = plan.scalar(0, &inputs);
+                plan.end_scalar();
             }
             Instruction::Combine { function, output } => {
                 let inputs = &code.combines[*function as usize].inputs;
-                plan.scalar(&mut scalars, inputs, *output);
+                let inputs: Vec<_> = inputs.iter().map(|&r| scalars[r as usize].clone()).collect();
+                scalars[*output as usize] = plan.scalar(0, &inputs);
+                plan.end_scalar();
+            }
+            Instruction::Cone { cone } => {
+                let call = &code.cones[*cone as usize];
+                let inputs: Vec<Vec<(u32, u32)>> = match call.component.of {
+                    Swinging::Orientation(_) => {
+                        let first = scalars[call.inputs[0] as usize].clone();
+                        scalars[call.outputs[0] as usize] = first.clone();
+                        let along = |k| first.iter().map(|&(d, slot)| (d + k, slot)).collect();
+                        vec![along(0), along(1), along(2)]
+                    }
+                    _ => {
+                        let read = |&r: &u32| scalars[r as usize].clone();
+                        let inputs: Vec<_> = call.inputs.iter().map(read).collect();
+                        // In open mode the angles pass: their slope is 1.
+                        for (input, &output) in inputs.iter().zip(&call.outputs) {
+                            scalars[output as usize] = plan.scalar(0, std::slice::from_ref(input));
+                        }
+                        inputs
+                    }
+                };
+                for (row, &register) in call.rows.iter().enumerate() {
+                    scalars[register as usize] = plan.scalar(1 + 3 * row, &inputs);
+                }
+                plan.end_scalar();
+            }
+            Instruction::Contact { contact } => {
+                let call = &code.contacts[*contact as usize];
+                let mut moving = vec![];
+                for (direction, _) in &transforms[call.frame as usize] {
+                    plan.unit(&mut moving, &[(*direction, 0)]);
+                }
+                for driver in &call.drivers {
+                    plan.unit(&mut moving, &scalars[*driver as usize]);
+                }
+                transforms[call.output as usize] = plan.close(moving, false, call.output);
             }
             Instruction::BallAt { base, orientation, output, .. } => {
                 let mut moving = plan.inherit(&transforms, *base);
+                let deforming = plan.deforms(*base);
                 plan.ball(&mut moving, &scalars[*orientation as usize]);
-                transforms[*output as usize] = plan.close(moving);
+                transforms[*output as usize] = plan.close(moving, deforming, *output);
             }
             Instruction::Chain { base, first, end, output } => {
                 let mut moving = plan.inherit(&transforms, *base);
+                let mut deforming = plan.deforms(*base);
                 for step in &code.steps[*first as usize..*end as usize] {
+                    deforming |= !step.is_rigid(code, |register| !plan.deforms(register));
                     match *step {
                         Step::Fixed(_) | Step::Shift(_) => {}
                         Step::TurnX(s)
                         | Step::TurnY(s)
                         | Step::TurnZ(s)
                         | Step::Turn { angle: s, .. }
-                        | Step::Slide { distance: s, .. } => {
+                        | Step::Slide { distance: s, .. }
+                        | Step::Stretch { factor: s, .. }
+                        | Step::Shear { amount: s, .. } => {
                             plan.unit(&mut moving, &scalars[s as usize]);
                         }
                         Step::Ball(s) => plan.ball(&mut moving, &scalars[s as usize]),
@@ -132,11 +205,11 @@ pub(super) fn plan(
                         }
                     }
                 }
-                transforms[*output as usize] = plan.close(moving);
+                transforms[*output as usize] = plan.close(moving, deforming, *output);
             }
         }
     }
-    plan.coordinate_entries = scalars[..coordinate_directions.len()].to_vec();
+    plan.coordinate_entries = scalars[..stored].to_vec();
     plan.row_entries = code.rows.iter().map(|&r| scalars[r as usize].clone()).collect();
     plan.entry_offsets.push(0);
     for list in transforms {
@@ -154,11 +227,12 @@ struct Moving {
 }
 
 impl DerivativePlan {
-    fn scalar(&mut self, scalars: &mut [Vec<(u32, u32)>], inputs: &[u32], output: u32) {
+    /// Derivatives of a new scalar that depends on `inputs` by as many slopes, from `first` on.
+    fn scalar(&mut self, first: usize, inputs: &[Vec<(u32, u32)>]) -> Vec<(u32, u32)> {
         let mut made: Vec<(u32, u32)> = vec![];
-        let mut count = 0;
-        for (position, &input) in inputs.iter().enumerate() {
-            for &(direction, from) in &scalars[input as usize] {
+        for (position, input) in inputs.iter().enumerate() {
+            let slope = (first + position) as u32;
+            for &(direction, from) in input {
                 let known = made.iter().find(|(d, _)| *d == direction).map(|(_, slot)| *slot);
                 let to = known.unwrap_or_else(|| {
                     let slot = self.derivatives as u32;
@@ -167,12 +241,16 @@ impl DerivativePlan {
                     slot
                 });
                 let first = known.is_none();
-                self.scalar_terms.push(ScalarTerm { input: position as u32, from, to, first });
-                count += 1;
+                self.scalar_terms.push(ScalarTerm { slope, from, to, first });
             }
         }
-        self.scalar_counts.push(count);
-        scalars[output as usize] = made;
+        made
+    }
+
+    /// Closes the terms of a scalar instruction.
+    fn end_scalar(&mut self) {
+        let all = self.scalar_terms.len() as u32;
+        self.scalar_counts.push(all - std::mem::replace(&mut self.ended, all));
     }
 
     fn inherit(&self, transforms: &[Vec<(u32, u32)>], base: u32) -> Vec<Moving> {
@@ -217,7 +295,24 @@ impl DerivativePlan {
         }
     }
 
-    fn close(&mut self, mut moving: Vec<Moving>) -> Vec<(u32, u32)> {
+    fn deforms(&self, register: u32) -> bool {
+        register != NO_BASE && self.deforming[register as usize]
+    }
+
+    fn close(
+        &mut self,
+        mut moving: Vec<Moving>,
+        deforming: bool,
+        output: u32,
+    ) -> Vec<(u32, u32)> {
+        self.deforming[output as usize] = deforming;
+        if deforming {
+            self.strain_slots.resize(self.twists, RIGID);
+            for own in moving.iter().filter(|m| m.own) {
+                self.strain_slots[own.twist as usize] = self.strains as u32;
+                self.strains += 1;
+            }
+        }
         moving.sort_by_key(|m| m.direction);
         moving.into_iter().map(|m| (m.direction, m.twist)).collect()
     }

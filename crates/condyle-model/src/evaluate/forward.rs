@@ -7,6 +7,17 @@ use super::program::{Mode, Program, SizeMismatch};
 use crate::component::MOST_COMBINED;
 use condyle_math::{Affine, Quat, Scalar};
 
+/// The largest size of a number that is taken as given.
+const MOST: f64 = 1e9;
+
+/// A number no larger than that; NaN counts as the upper end.
+#[inline(always)]
+pub(super) fn finite<S: Scalar>(x: S) -> S {
+    let (least, most) = (S::from_f64(-MOST), S::from_f64(MOST));
+    let held = x.select_less(most, x, most);
+    held.select_less(least, least, held)
+}
+
 /// Runs balls one after another: first all their own transforms, then the products along the tree.
 ///
 /// The first loop has no step that waits for the one before it, so the divisions overlap. In the
@@ -39,8 +50,9 @@ impl Program {
     /// Computes the transforms of all segments at the requested coordinates.
     ///
     /// `requested` holds the stored numbers of all coordinates in the model's order, in radians and
-    /// metres, an orientation as x, y, z, w of any length but zero. Numbers for coordinates that
-    /// follow others are ignored. Nothing is allocated.
+    /// metres, an orientation as x, y, z, w of any length (of none: no turn). Numbers for coordinates
+    /// that follow others are ignored, and sizes beyond 10⁹ count as 10⁹: no input makes a transform
+    /// that is not finite. Nothing is allocated.
     ///
     /// # Errors
     /// [`SizeMismatch`] if `requested`, or a pose made for another program, has the wrong length.
@@ -72,6 +84,7 @@ impl Program {
                         &mut Silent,
                     );
                 }
+                Instruction::Contact { contact } => self.run_contact(contact, pose),
                 _ => self.run_scalar(&run[0], mode, &mut pose.scalars),
             }
         }
@@ -92,7 +105,10 @@ impl Program {
             self.code.transforms,
             pose.transforms.len(),
         )?;
-        pose.scalars[..self.stored].copy_from_slice(requested);
+        // What no body can be asked for stays finite all the way.
+        for (value, &asked) in pose.scalars.iter_mut().zip(requested) {
+            *value = finite(asked);
+        }
         if mode == Mode::Posed {
             for &(register, lower, upper) in &self.limits {
                 let value = &mut pose.scalars[register as usize];
@@ -100,6 +116,9 @@ impl Program {
                 *value = value.select_less(lower, lower, *value);
                 *value = upper.select_less(*value, upper, *value);
             }
+        }
+        for &(own, asked) in &self.asked {
+            pose.scalars[asked as usize] = pose.scalars[own as usize];
         }
         for &(register, value) in &self.constants {
             pose.scalars[register as usize] = S::from_f64(value);
@@ -117,8 +136,8 @@ impl Program {
     ) {
         match *instruction {
             Instruction::Function { function, input, output } => {
-                scalars[output as usize] =
-                    self.code.functions[function as usize].apply(scalars[input as usize]);
+                let value = self.code.functions[function as usize].apply(scalars[input as usize]);
+                scalars[output as usize] = finite(value);
             }
             Instruction::Combine { function, output } => {
                 let call = &self.code.combines[function as usize];
@@ -127,7 +146,7 @@ impl Program {
                 for (value, &input) in values.iter_mut().zip(&call.inputs) {
                     *value = scalars[input as usize];
                 }
-                scalars[output as usize] = call.function.apply(&values[..n]);
+                scalars[output as usize] = finite(call.function.apply(&values[..n]));
             }
             Instruction::Hold { passive, lower, upper, output } => {
                 let mut value = scalars[passive as usize];
@@ -143,7 +162,54 @@ impl Program {
                 }
                 scalars[output as usize] = value;
             }
-            Instruction::Chain { .. } | Instruction::BallAt { .. } => {}
+            Instruction::Cone { cone } => self.run_cone(cone, mode, scalars),
+            Instruction::Contact { .. }
+            | Instruction::Chain { .. }
+            | Instruction::BallAt { .. } => {}
         }
+    }
+
+    /// Holds a ball joint inside its cone, or says how far inside it is.
+    fn run_cone<S: Scalar>(&self, cone: u32, mode: Mode, scalars: &mut [S]) {
+        let call = &self.code.cones[cone as usize];
+        let mut asked = [0.0; 4];
+        let mut values = [S::zero(); 4];
+        let n = call.inputs.len();
+        for (i, &input) in call.inputs.iter().enumerate() {
+            values[i] = scalars[input as usize];
+            asked[i] = values[i].value();
+        }
+        if mode == Mode::Posed {
+            if let Some(legal) = call.component.legal(&asked[..n]) {
+                values = legal.map(S::from_f64);
+            }
+            // What is left to correct is nothing.
+            call.rows.iter().for_each(|&row| scalars[row as usize] = S::zero());
+        } else {
+            let rows = call.component.open_rows(&asked[..n]);
+            for (&register, (value, slopes)) in call.rows.iter().zip(rows) {
+                let slopes = call.component.stored_slopes(&asked[..n], slopes);
+                let terms = values[..n].iter().zip(slopes);
+                scalars[register as usize] = terms
+                    .fold(S::from_f64(value), |sum, (x, slope)| sum + x.chain(|_| (0.0, slope)));
+            }
+        }
+        for (&output, value) in call.outputs.iter().zip(values) {
+            scalars[output as usize] = value;
+        }
+    }
+
+    /// Puts a bone on its ellipsoid.
+    fn run_contact<S: Scalar>(&self, contact: u32, pose: &mut Pose<S>) {
+        let call = &self.code.contacts[contact as usize];
+        let mut drivers = [S::zero(); 2];
+        for (value, &driver) in drivers.iter_mut().zip(&call.drivers) {
+            *value = pose.scalars[driver as usize];
+        }
+        let frame = pose.transforms[call.frame as usize];
+        let glide = call.law.glide(frame, &drivers[..call.drivers.len()]);
+        pose.transforms[call.output as usize] = Affine::from_rotation(glide.rotation);
+        let report = [glide.angles[0], glide.angles[1], glide.gaps[0], glide.gaps[1]];
+        pose.scalars[call.report as usize..][..4].copy_from_slice(&report);
     }
 }

@@ -1,6 +1,8 @@
 //! What a program consists of: instructions, the steps of chains, and the tables they read.
 
-use crate::component::{ConstantCurvature, Ellipsoid, Law, Pivot};
+use crate::component::{
+    Along, ConstantCurvature, Curve, Custom, Ellipsoid, Gliding, JointCone, Law, Pivot,
+};
 use condyle_math::function::{Function, FunctionOfSeveral};
 use condyle_math::{Affine, Scalar, Vec3};
 
@@ -9,6 +11,25 @@ pub(super) const NO_BOUND: u32 = u32::MAX;
 
 /// Marks a chain that starts from nothing instead of from a transform.
 pub(super) const NO_BASE: u32 = u32::MAX;
+
+impl Step {
+    /// Whether it keeps lengths and angles, given which transforms computed before do.
+    pub(super) fn is_rigid(self, code: &Code, transform: impl Fn(u32) -> bool) -> bool {
+        match self {
+            Self::Fixed(index) => {
+                let m = code.fixed[index as usize].linear;
+                let product = m.transpose() * m;
+                [product.x - Vec3::X, product.y - Vec3::Y, product.z - Vec3::Z]
+                    .iter()
+                    .all(|column| column.norm() < 1e-6)
+            }
+            Self::Stretch { .. } | Self::Shear { .. } => false,
+            Self::Law(index) => code.laws[index as usize].law.is_rigid(),
+            Self::Transform(register) => transform(register),
+            _ => true,
+        }
+    }
+}
 
 /// One elementary motion of a chain, multiplied from the right.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +50,10 @@ pub(super) enum Step {
     Slide { axis: Vec3, distance: u32 },
     /// A rotation by four consecutive scalars x, y, z, w.
     Ball(u32),
+    /// A scale by a factor.
+    Stretch { along: u32, factor: u32 },
+    /// A slide of layers over each other.
+    Shear { directions: u32, amount: u32 },
     /// A smooth law of a few scalars.
     Law(u32),
     /// A transform computed before.
@@ -50,6 +75,8 @@ pub(super) enum AnyLaw {
     Pivot(Pivot),
     Ellipsoid(Ellipsoid),
     ConstantCurvature(ConstantCurvature),
+    Curve(Curve),
+    Custom(Custom),
 }
 
 impl Law for AnyLaw {
@@ -59,6 +86,15 @@ impl Law for AnyLaw {
             Self::Pivot(law) => law.transform(inputs),
             Self::Ellipsoid(law) => law.transform(inputs),
             Self::ConstantCurvature(law) => law.transform(inputs),
+            Self::Curve(law) => law.transform(inputs),
+            Self::Custom(law) => law.transform(inputs),
+        }
+    }
+
+    fn is_rigid(&self) -> bool {
+        match self {
+            Self::Custom(law) => law.is_rigid(),
+            _ => true,
         }
     }
 }
@@ -72,6 +108,10 @@ pub(super) enum Instruction {
     Combine { function: u32, output: u32 },
     /// `scalars[output] = scalars[passive]`, held between other scalars in posed mode.
     Hold { passive: u32, lower: u32, upper: u32, output: u32 },
+    /// The numbers of a ball joint, held inside a cone in posed mode.
+    Cone { cone: u32 },
+    /// A bone put on an ellipsoid.
+    Contact { contact: u32 },
     /// `transforms[output] = transforms[base] · steps`.
     Chain { base: u32, first: u32, end: u32, output: u32 },
     /// The commonest chain of character skeletons: a shift and a ball.
@@ -83,6 +123,28 @@ pub(super) enum Instruction {
 pub(super) struct CombineCall {
     pub function: FunctionOfSeveral,
     pub inputs: Vec<u32>,
+}
+
+/// A cone with its registers.
+#[derive(Clone, Debug)]
+pub(super) struct ConeCall {
+    pub component: JointCone,
+    pub inputs: Vec<u32>,
+    pub outputs: Vec<u32>,
+    pub rows: Vec<u32>,
+}
+
+/// A contact with its registers.
+#[derive(Clone, Debug)]
+pub(super) struct ContactCall {
+    pub law: Gliding,
+    /// The transform of the bone in the ellipsoid, before the contact turns it.
+    pub frame: u32,
+    pub drivers: Vec<u32>,
+    /// The transform of the two turns.
+    pub output: u32,
+    /// The first of four scalars: two angles, two gaps.
+    pub report: u32,
 }
 
 /// Instructions in the order in which they run, and everything they refer to by position.
@@ -98,6 +160,13 @@ pub(super) struct Code {
     pub functions: Vec<Function>,
     pub combines: Vec<CombineCall>,
     pub laws: Vec<LawCall>,
+    pub scales: Vec<Along>,
+    /// Along and across.
+    pub shears: Vec<[Vec3; 2]>,
     /// Registers that must not be negative in a legal posture, beside the bounds of coordinates.
     pub rows: Vec<u32>,
+    pub cones: Vec<ConeCall>,
+    pub contacts: Vec<ContactCall>,
+    /// The transform register of the world, on which the roots hang.
+    pub base: u32,
 }

@@ -1,23 +1,25 @@
 //! How every segment moves with every direction of the coordinates.
 
 use super::chain::{Recorder, run_chain};
-use super::derivative_plan::{DerivativePlan, Start, Term};
-use super::instruction::{Code, Instruction, NO_BASE};
+use super::deformation::NO_STRAIN;
+use super::forward::finite;
+use super::instruction::{Instruction, NO_BASE};
 use super::pose::Pose;
 use super::program::{Mode, Program, SizeMismatch};
-use super::rotation_rate::{exp_rate, log_rate};
-use crate::component::{Law, MOST_COMBINED, MOST_LAW_INPUTS};
+use super::tape::Tape;
+use crate::component::MOST_COMBINED;
 use crate::model::SegmentId;
 use condyle_math::{Affine, Dual, Mat3, Quat, Twist, Vec3};
 
 /// World generators of one evaluation.
 ///
 /// Sparse: a segment has a twist for each direction that moves it, and shares the twists of its
-/// ancestors. The velocity of a point p of the world per unit of a direction is
-/// [`Twist::velocity_at`]\(p\).
+/// ancestors. Below a scale or a shear a twist has a strain beside it. The velocity of a point of
+/// the world per unit of a direction is [`Jacobian::velocity_at`].
 #[derive(Clone, Debug)]
 pub struct Jacobian {
     pub(super) twists: Vec<Twist>,
+    pub(super) strains: Vec<Mat3>,
     pub(super) derivatives: Vec<f64>,
 }
 
@@ -26,13 +28,31 @@ impl Jacobian {
     pub fn new(program: &Program) -> Self {
         let mut derivatives = vec![0.0; program.plan.derivatives];
         derivatives[0] = 1.0;
-        Self { twists: vec![Twist::zero(); program.plan.twists], derivatives }
+        Self {
+            twists: vec![Twist::zero(); program.plan.twists],
+            strains: vec![NO_STRAIN; program.plan.strains],
+            derivatives,
+        }
     }
 
     /// A twist by its number, as [`Program::segment_directions`] gives it.
     #[inline(always)]
     pub fn twist(&self, number: u32) -> Twist {
         self.twists[number as usize]
+    }
+
+    /// The strain beside a twist, for a segment below a scale or a shear: a symmetric matrix D, so
+    /// that the point p of the world moves by the twist's velocity and D·p.
+    #[inline(always)]
+    pub fn strain(&self, program: &Program, number: u32) -> Option<Mat3> {
+        program.plan.strain_slot(number).map(|slot| self.strains[slot])
+    }
+
+    /// The velocity of a point (in the world, metres) per unit of a direction, by its twist.
+    #[inline(always)]
+    pub fn velocity_at(&self, program: &Program, number: u32, point: Vec3) -> Vec3 {
+        let rigid = self.twist(number).velocity_at(point);
+        self.strain(program, number).map_or(rigid, |strain| rigid + strain * point)
     }
 
     /// The derivative in a slot, as [`Program::coordinate_directions`] gives it.
@@ -53,89 +73,8 @@ impl Jacobian {
     ) {
         if let Some(segment) = segment {
             for &(direction, twist) in program.segment_directions(segment) {
-                visit(direction as usize, self.twist(twist).velocity_at(point));
+                visit(direction as usize, self.velocity_at(program, twist, point));
             }
-        }
-    }
-}
-
-/// Turns unit motions into twists, in the order that the plan foresees.
-struct Tape<'p, 'a> {
-    twists: &'a mut [Twist],
-    derivatives: &'a [f64],
-    counts: std::slice::Iter<'p, u32>,
-    terms: std::slice::Iter<'p, Term>,
-    scalars: &'a [f64],
-    plan: &'p DerivativePlan,
-}
-
-impl Tape<'_, '_> {
-    #[inline(always)]
-    fn emit(&mut self, twist: impl FnOnce() -> Twist) {
-        let count = self.counts.next().copied().unwrap_or(0);
-        if count == 0 {
-            return;
-        }
-        let unit = twist();
-        for _ in 0..count {
-            let Some(term) = self.terms.next() else { return };
-            let addend = unit * self.derivatives[term.derivative as usize];
-            self.twists[term.twist as usize] = match term.start {
-                Start::Zero => addend,
-                Start::From(other) => self.twists[other as usize] + addend,
-                Start::Add => self.twists[term.twist as usize] + addend,
-            };
-        }
-    }
-}
-
-impl Recorder<f64> for Tape<'_, '_> {
-    #[inline(always)]
-    fn motion(&mut self, twist: impl FnOnce() -> Twist) {
-        self.emit(twist);
-    }
-
-    fn law(&mut self, code: &Code, law: u32, before: Affine) {
-        let call = &code.laws[law as usize];
-        let mut inputs = [Dual::<MOST_LAW_INPUTS>::constant(0.0); MOST_LAW_INPUTS];
-        for (i, &register) in call.inputs.iter().enumerate() {
-            inputs[i] = Dual::variable(self.scalars[register as usize], i);
-        }
-        let moved = call.law.transform(&inputs);
-        let part = |v: Vec3<Dual<MOST_LAW_INPUTS>>, f: &dyn Fn(Dual<MOST_LAW_INPUTS>) -> f64| {
-            Vec3::new(f(v.x), f(v.y), f(v.z))
-        };
-        let whole = |f: &dyn Fn(Dual<MOST_LAW_INPUTS>) -> f64| {
-            let l = moved.linear;
-            let linear = Mat3::from_columns(part(l.x, f), part(l.y, f), part(l.z, f));
-            Affine::new(linear, part(moved.translation, f))
-        };
-        let value = whole(&|d| d.value);
-        for i in 0..call.inputs.len() {
-            let derivative = whole(&|d| d.partials[i]);
-            self.emit(|| Twist::from_derivative(value, derivative).transformed(before));
-        }
-    }
-
-    fn power(&mut self, register: u32, exponent: f64, rotation: Mat3, before: Affine) {
-        let turn = rotation.log();
-        let raised = turn * exponent;
-        for &(_, twist) in self.plan.segment_entries(register as usize) {
-            let spin = self.twists[twist as usize].angular;
-            // d exp(p·ρ) = J(p·ρ)·p·J(ρ)⁻¹·ω, with J the left Jacobian of SO(3).
-            let moved = match exponent {
-                1.0 => spin,
-                -1.0 => -(rotation.transpose() * spin),
-                _ => exp_rate(raised, log_rate(turn, spin) * exponent),
-            };
-            self.emit(|| Twist::rotation(before.linear * moved, before.translation));
-        }
-    }
-
-    fn transform(&mut self, register: u32, before: Affine) {
-        for &(_, twist) in self.plan.segment_entries(register as usize) {
-            let inner = self.twists[twist as usize];
-            self.emit(|| inner.transformed(before));
         }
     }
 }
@@ -152,6 +91,7 @@ impl Program {
         jacobian: &mut Jacobian,
     ) -> Result<(), SizeMismatch> {
         SizeMismatch::check("the Jacobian", self.plan.twists, jacobian.twists.len())?;
+        SizeMismatch::check("the Jacobian", self.plan.strains, jacobian.strains.len())?;
         SizeMismatch::check("the Jacobian", self.plan.derivatives, jacobian.derivatives.len())?;
         self.load(requested, Mode::Open, pose)?;
         let plan = &self.plan;
@@ -164,6 +104,9 @@ impl Program {
             let (base, output) = match *instruction {
                 Instruction::Chain { base, output, .. } => (base, output),
                 Instruction::BallAt { base, output, .. } => (base, output),
+                Instruction::Contact { contact } => {
+                    (NO_BASE, self.code.contacts[contact as usize].output)
+                }
                 _ => {
                     let count = scalar_counts.next().copied().unwrap_or(0) as usize;
                     let own = scalar_terms.as_slice().get(..count).unwrap_or(&[]);
@@ -176,6 +119,8 @@ impl Program {
                 if base == NO_BASE { Affine::IDENTITY } else { pose.transforms[base as usize] };
             let mut tape = Tape {
                 twists: &mut jacobian.twists,
+                strains: &mut jacobian.strains,
+                deforming: plan.deforming[output as usize],
                 derivatives: &jacobian.derivatives,
                 counts: term_counts.clone(),
                 terms: terms.clone(),
@@ -188,14 +133,26 @@ impl Program {
                     let q: &[f64; 4] = pose.scalars[q..].first_chunk().expect("four registers");
                     let at = from.shifted(shift);
                     let turned = at.linear * Quat::from(*q).to_mat3();
-                    for axis in [turned.x, turned.y, turned.z] {
-                        tape.emit(|| Twist::rotation(axis, at.translation));
+                    let end = Affine::new(turned, at.translation);
+                    for (unit, axis) in Vec3::UNITS.into_iter().zip([turned.x, turned.y, turned.z])
+                    {
+                        let inside = || Twist::rotation(unit, Vec3::ZERO);
+                        tape.motion(end, inside, || Twist::rotation(axis, at.translation));
                     }
-                    Affine::new(turned, at.translation)
+                    end
                 }
                 Instruction::Chain { first, end, .. } => {
                     let steps = &self.code.steps[first as usize..end as usize];
                     run_chain(&self.code, steps, from, &pose.scalars, &pose.transforms, &mut tape)
+                }
+                Instruction::Contact { contact } => {
+                    let call = &self.code.contacts[contact as usize];
+                    let frame = pose.transforms[call.frame as usize];
+                    let (turns, report) = tape.contact(call, frame);
+                    (term_counts, terms) = (tape.counts, tape.terms);
+                    pose.scalars[call.report as usize..][..4].copy_from_slice(&report);
+                    pose.transforms[output as usize] = turns;
+                    continue;
                 }
                 _ => from,
             };
@@ -222,7 +179,7 @@ impl Program {
             Instruction::Function { function, input, output } => {
                 let x = pose.scalars[input as usize];
                 let (value, slope) = self.code.functions[function as usize].value_and_slope(x);
-                pose.scalars[output as usize] = value;
+                pose.scalars[output as usize] = finite(value);
                 terms.iter().for_each(|term| add(term, slope));
             }
             Instruction::Combine { function, output } => {
@@ -232,9 +189,9 @@ impl Program {
                 for (value, &input) in values.iter_mut().zip(&call.inputs) {
                     value.value = pose.scalars[input as usize];
                 }
-                pose.scalars[output as usize] = call.function.apply(&values[..n]).value;
+                pose.scalars[output as usize] = finite(call.function.apply(&values[..n]).value);
                 for term in terms {
-                    let i = term.input as usize;
+                    let i = term.slope as usize;
                     values[i].partials[0] = 1.0;
                     add(term, call.function.apply(&values[..n]).partials[0]);
                     values[i].partials[0] = 0.0;
@@ -244,7 +201,27 @@ impl Program {
                 pose.scalars[output as usize] = pose.scalars[passive as usize];
                 terms.iter().for_each(|term| add(term, 1.0));
             }
-            Instruction::Chain { .. } | Instruction::BallAt { .. } => {}
+            Instruction::Cone { cone } => {
+                let call = &self.code.cones[cone as usize];
+                let mut numbers = [0.0; 4];
+                for (i, &input) in call.inputs.iter().enumerate() {
+                    numbers[i] = pose.scalars[input as usize];
+                }
+                for (&output, value) in call.outputs.iter().zip(numbers) {
+                    pose.scalars[output as usize] = value;
+                }
+                let rows = call.component.open_rows(&numbers[..call.inputs.len()]);
+                for (&register, (value, _)) in call.rows.iter().zip(&rows) {
+                    pose.scalars[register as usize] = *value;
+                }
+                for term in terms {
+                    add(term, match (term.slope as usize).checked_sub(1) {
+                        None => 1.0,
+                        Some(k) => rows[k / 3].1[k % 3],
+                    });
+                }
+            }
+            Instruction::Contact { .. } | Instruction::Chain { .. } | Instruction::BallAt { .. } => {}
         }
     }
 }

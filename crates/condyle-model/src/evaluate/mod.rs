@@ -23,15 +23,18 @@
 mod chain;
 mod closure;
 mod compile;
+mod deformation;
 mod derivative_plan;
 mod forward;
 mod instruction;
 mod jacobian;
+mod normals;
 mod pose;
 mod program;
 mod rotation_rate;
+mod tape;
 
 pub use closure::ClosureRows;
 pub use jacobian::Jacobian;
-pub use pose::Pose;
+pub use pose::{ContactReport, Pose};
 pub use program::{Mode, Program, SizeMismatch};

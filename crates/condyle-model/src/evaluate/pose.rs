@@ -4,6 +4,15 @@ use super::program::Program;
 use crate::model::{CoordinateId, Model, SegmentId};
 use condyle_math::{Affine, Scalar};
 
+/// What a contact did to its bone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactReport<S = f64> {
+    /// The two turns in radians: about the given axis, and about the line to the first point.
+    pub angles: [S; 2],
+    /// How far each point stays off the surface in metres, positive outside; 0 in contact.
+    pub gaps: [S; 2],
+}
+
 /// The buffers of one evaluation: effective coordinates and the transforms of all segments.
 ///
 /// Made once for a program and used for any number of evaluations. A pose belongs to one character
@@ -15,6 +24,8 @@ pub struct Pose<S = f64> {
     segments: usize,
     stored: usize,
     rows: Vec<u32>,
+    base: usize,
+    reports: Vec<u32>,
 }
 
 impl<S: Scalar> Pose<S> {
@@ -26,6 +37,8 @@ impl<S: Scalar> Pose<S> {
             segments: program.segments,
             stored: program.stored,
             rows: program.code.rows.clone(),
+            base: program.code.base as usize,
+            reports: program.code.contacts.iter().map(|c| c.report).collect(),
         }
     }
 
@@ -40,10 +53,23 @@ impl<S: Scalar> Pose<S> {
         self.transforms[segment.index()]
     }
 
-    /// The world transform of a segment, or the identity for the world itself.
+    /// The world transform of a segment, or that of the model's own world.
     #[inline]
     pub fn frame(&self, segment: Option<SegmentId>) -> Affine<S> {
-        segment.map_or_else(Affine::identity, |id| self.segment(id))
+        self.transforms[segment.map_or(self.base, SegmentId::index)]
+    }
+
+    /// Puts the model's world somewhere else: into a scene, or into the space of a camera. Every
+    /// evaluation after it carries all segments along; it is rigid, and the identity at first.
+    pub fn place(&mut self, world: Affine<S>) {
+        self.transforms[self.base] = world;
+    }
+
+    /// How the contact of that number (in the model's order, of those that move something) came out.
+    pub fn contact(&self, number: usize) -> Option<ContactReport<S>> {
+        let at = *self.reports.get(number)? as usize;
+        let [a, b, c, d] = *self.scalars[at..].first_chunk()?;
+        Some(ContactReport { angles: [a, b], gaps: [c, d] })
     }
 
     /// The world transforms of all segments, in the model's order.

@@ -22,6 +22,9 @@ pub struct Program {
     pub(super) segments: usize,
     /// Registers that hold the same number at every evaluation.
     pub(super) constants: Vec<(u32, f64)>,
+    /// Coordinates that a limit component holds: their own register, and the one for what was
+    /// asked for.
+    pub(super) asked: Vec<(u32, u32)>,
     /// Register, lower and upper bound of every coordinate that posed mode holds.
     pub(super) limits: Vec<(u32, f64, f64)>,
     pub(super) code: Code,
@@ -80,6 +83,11 @@ impl Program {
     /// [`Jacobian`]: super::Jacobian
     pub fn segment_directions(&self, segment: SegmentId) -> &[(u32, u32)] {
         self.plan.segment_entries(segment.index())
+    }
+
+    /// Whether a segment hangs below a scale or a shear, so that its transform is not rigid.
+    pub fn deforms(&self, segment: SegmentId) -> bool {
+        self.plan.deforming[segment.index()]
     }
 
     /// Directions that move the effective value of a coordinate of one number, each with the slot

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::component::{
     Ball, Combine, Compensate, Component, ConstantCurvature, Depend, Ellipsoid, Map, Pivot, Place,
-    Product, Rotate, Source, Translate,
+    Product, Rotate, Source, SurfaceAxis, Translate,
 };
 use crate::limit::Range;
 use condyle_math::function::{Function, FunctionOfSeveral};
@@ -91,20 +91,18 @@ impl ModelBuilder {
         JointSetId(self.model.joint_sets.len() as u32 - 1)
     }
 
-    /// A coordinate without limits; an orientation starts at the identity, others at 0.
+    /// A coordinate without limits at its neutral value: the identity, 1 for a scale, or 0.
     pub fn coordinate(
         &mut self,
         set: JointSetId,
         name: &str,
         kind: CoordinateKind,
     ) -> CoordinateId {
-        let default =
-            if kind == CoordinateKind::Orientation { [0.0, 0.0, 0.0, 1.0] } else { [0.0; 4] };
         self.model.coordinates.push(Coordinate {
             name: name.to_owned(),
             joint_set: set,
             kind,
-            default,
+            default: kind.neutral(),
             range: Range::FREE,
             locked: false,
             follows: None,
@@ -216,7 +214,7 @@ impl ModelBuilder {
         self.component(set, name, Component::Place(Place { child_in_parent }))
     }
 
-    /// A frame that glides on an ellipsoid with these half axes (metres).
+    /// A frame that glides on an ellipsoid with these half axes (metres), as OpenSim has it.
     pub fn ellipsoid(
         &mut self,
         set: JointSetId,
@@ -224,7 +222,8 @@ impl ModelBuilder {
         angles: [Source; 3],
         radii: Vec3,
     ) -> Source {
-        self.component(set, name, Component::Ellipsoid(Ellipsoid { angles, radii }))
+        let axis = SurfaceAxis::OpenSim;
+        self.component(set, name, Component::Ellipsoid(Ellipsoid { angles, radii, axis }))
     }
 
     /// The end of a bent column.
@@ -314,6 +313,15 @@ impl ModelBuilder {
             match &mut named.component {
                 Component::Rotate(c) => c.axis = c.axis.normalized(),
                 Component::Translate(c) => c.axis = c.axis.normalized(),
+                Component::Scale(c) => {
+                    if let Some(axis) = c.along.axis_mut() {
+                        *axis = axis.normalized();
+                    }
+                }
+                Component::Shear(c) => {
+                    c.along = c.along.normalized();
+                    c.across = c.across.normalized();
+                }
                 _ => {}
             }
         }

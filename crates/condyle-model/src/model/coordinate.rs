@@ -11,7 +11,9 @@ pub enum CoordinateKind {
     Rotation,
     /// A distance in metres.
     Translation,
-    /// Neither: a weight, or an angle mixed with a distance.
+    /// A factor of size without unit; 1 when nothing is said.
+    Scale,
+    /// None of these: a weight, or an angle mixed with a distance.
     Other,
     /// A rotation in space: four stored numbers x, y, z, w that move in three.
     Orientation,
@@ -21,6 +23,15 @@ impl CoordinateKind {
     /// How many numbers are stored.
     pub fn stored(self) -> usize {
         if self == Self::Orientation { 4 } else { 1 }
+    }
+
+    /// The value that changes nothing.
+    pub fn neutral(self) -> [f64; 4] {
+        match self {
+            Self::Orientation => [0.0, 0.0, 0.0, 1.0],
+            Self::Scale => [1.0, 0.0, 0.0, 0.0],
+            _ => [0.0; 4],
+        }
     }
 
     /// In how many independent directions it moves.
@@ -33,6 +44,7 @@ impl CoordinateKind {
         match self {
             Self::Rotation => "rotation",
             Self::Translation => "translation",
+            Self::Scale => "scale",
             Self::Other => "other",
             Self::Orientation => "orientation",
         }

@@ -128,6 +128,11 @@ impl Model {
         (0..self.coordinates.len() as u32).map(CoordinateId)
     }
 
+    /// The positions of all components.
+    pub fn component_ids(&self) -> impl ExactSizeIterator<Item = ComponentId> + use<> {
+        (0..self.components.len() as u32).map(ComponentId)
+    }
+
     /// The positions of all segments.
     pub fn segment_ids(
         &self,
@@ -189,6 +194,31 @@ impl Model {
         self.coordinates.iter().flat_map(|c| c.default[..c.kind.stored()].iter().copied()).collect()
     }
 
+    /// Between two sets of stored numbers: straight for single numbers, along the shortest arc for
+    /// orientations. How a joint interpolates is settled by the coordinates it is made of.
+    ///
+    /// `share` runs from 0 (`from`) to 1 (`to`); all slices have [`Model::stored_len`] numbers.
+    ///
+    /// # Panics
+    /// If a slice is too short.
+    pub fn interpolate(&self, from: &[f64], to: &[f64], share: f64, between: &mut [f64]) {
+        for id in self.coordinate_ids() {
+            let place = self.stored_range(id);
+            if place.len() == 1 {
+                let (a, b) = (from[place.start], to[place.start]);
+                between[place.start] = a + (b - a) * share;
+                continue;
+            }
+            let [a, b] = [from, to].map(|list| {
+                let q: [f64; 4] = std::array::from_fn(|i| list[place.start + i]);
+                Quat::from_mat3(Quat::from(q).to_mat3())
+            });
+            let turn = (a.conjugate() * b).to_mat3().log();
+            let turned = (a * Quat::exp(turn * share)).normalized();
+            between[place].copy_from_slice(&turned.to_array());
+        }
+    }
+
     /// Moves coordinates along their directions: q + d, or q·exp(d) for an orientation.
     ///
     /// `stored` and `moved` have [`Model::stored_len`] numbers, `step` [`Model::tangent_len`].
@@ -217,8 +247,31 @@ impl Model {
                 .into_iter()
                 .filter_map(|segment| self.segment(segment).motion)
                 .collect(),
+            Component::Contact(c) => {
+                let mut path = self.path_between(c.surface, c.segment);
+                path.retain(|&id| id != c.segment);
+                let motions = path.into_iter().filter_map(|id| self.segment(id).motion);
+                motions.chain(c.before).chain(c.drivers.iter().copied()).collect()
+            }
             other => other.inputs().into_iter().map(|(_, _, source)| source).collect(),
         }
+    }
+
+    /// The segments below an ancestor down to a segment; none if it is no ancestor.
+    pub(crate) fn path_between(&self, ancestor: SegmentId, segment: SegmentId) -> Vec<SegmentId> {
+        let mut path = vec![];
+        let mut here = Some(segment);
+        while let Some(id) = here
+            && path.len() <= self.segments.len()
+        {
+            if id == ancestor {
+                path.reverse();
+                return path;
+            }
+            path.push(id);
+            here = self.segment(id).parent;
+        }
+        vec![]
     }
 
     /// The segments from the topmost named ancestor of a compensation down to the parent.

@@ -1,16 +1,27 @@
 //! Models grown at random from a seed.
 
+use std::collections::HashSet;
+
 use condyle_math::function::{
     Curve, Function, FunctionOfSeveral, MultivariatePolynomial, Polynomial, SimmSpline,
 };
-use condyle_math::{Affine, Quat, Vec3};
-use condyle_model::component::{Centre, Compensate, ConstantCurvature, Depend, Pivot};
+use condyle_math::{Affine, EulerOrder, Mat3, Quat, Scalar, Vec3};
+use condyle_model::component::{
+    Along, Ball, Centre, Compensate, Component, ConstantCurvature, Contact, ContactPair,
+    Curve as Track, Depend, Ellipsoid, Gliding, Heading, JointCone, Law, Pivot, Registry, Scale,
+    Shear, SurfaceAxis, Swinging,
+};
+use condyle_model::limit::{Cone, ConePoint, Projection};
 use condyle_model::{CoordinateKind, JointSetId, Model, ModelBuilder, Range, SegmentId, Source};
 
 /// SplitMix64 (Steele, Lea & Flood 2014): reproducible everywhere, no dependency.
 pub(crate) struct Dice(u64);
 
 impl Dice {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
     fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -19,11 +30,11 @@ impl Dice {
         z ^ (z >> 31)
     }
 
-    fn below(&mut self, n: usize) -> usize {
+    pub(crate) fn below(&mut self, n: usize) -> usize {
         (self.next() % n as u64) as usize
     }
 
-    fn within(&mut self, size: f64) -> f64 {
+    pub(crate) fn within(&mut self, size: f64) -> f64 {
         size * ((self.next() >> 11) as f64 / (1u64 << 52) as f64 - 1.0)
     }
 
@@ -71,12 +82,15 @@ impl Dice {
 
 /// A model of up to nine segments and stored numbers for it, some outside their ranges.
 pub(crate) fn random_model(seed: u64) -> (Model, Vec<f64>) {
-    let mut dice = Dice(seed);
+    let mut dice = Dice::new(seed);
     let mut b = ModelBuilder::new("random");
     let mut segments: Vec<SegmentId> = vec![];
     let mut parents: Vec<Option<SegmentId>> = vec![];
     let mut scalars: Vec<Source> = vec![];
     let mut transforms: Vec<Source> = vec![];
+    // Components whose transforms are not rigid, and segments that they move.
+    let mut bent: HashSet<Source> = HashSet::new();
+    let mut bent_segments: HashSet<SegmentId> = HashSet::new();
     for i in 0..1 + dice.below(9) {
         let parent = match dice.below(segments.len() + 1) {
             0 => None,
@@ -104,13 +118,25 @@ pub(crate) fn random_model(seed: u64) -> (Model, Vec<f64>) {
             continue;
         }
         for c in 0..1 + dice.below(5) {
-            grow_component(&mut b, &mut dice, set, c, &mut scalars, &mut transforms);
+            grow_component(&mut b, &mut dice, set, c, &mut scalars, &mut transforms, &mut bent);
         }
-        if let Some(parent) = parent
-            && dice.below(3) == 0
-        {
-            // Undo the parent, or all, before a turn of its own.
-            let ancestors = if dice.below(2) == 0 { vec![parent] } else { above(parent) };
+        // Undo the parent, or all, before a turn of its own.
+        let ancestors =
+            parent.map_or(vec![], |p| if dice.below(2) == 0 { vec![p] } else { above(p) });
+        let rigid = ancestors.iter().all(|id| !bent_segments.contains(id));
+        if dice.below(3) == 0 && rigid && !ancestors.is_empty() {
+            // Glide on an ancestor instead, under a turn of the joint's own.
+            if dice.below(2) == 0 {
+                let surface = ancestors[ancestors.len() - 1];
+                let before = b.rotate(set, "before", scalars[0], Vec3::Z);
+                let drivers = scalars.iter().copied().take(dice.below(3)).collect();
+                let law = grow_gliding(&mut dice);
+                let contact = Contact { segment, surface, before: Some(before), drivers, law };
+                let glide = b.component(set, "glide", Component::Contact(contact));
+                let motion = b.product(set, "gliding", vec![before, glide]);
+                b.output(set, segment, motion);
+                continue;
+            }
             let weight = [1.0, 1.0, 0.5][dice.below(3)];
             let compensate = Compensate { segment, ancestors, weight };
             let undo = b.compensate(set, "compensate", compensate);
@@ -121,6 +147,9 @@ pub(crate) fn random_model(seed: u64) -> (Model, Vec<f64>) {
             // Often the newest transform, sometimes one that moves another segment already.
             let pick = transforms.len() - 1 - dice.below(transforms.len().min(3));
             b.output(set, segment, transforms[pick]);
+            if bent.contains(&transforms[pick]) {
+                bent_segments.insert(segment);
+            }
         }
     }
     let model = b.build().unwrap_or_else(|findings| panic!("seed {seed}: {findings:?}"));
@@ -130,7 +159,8 @@ pub(crate) fn random_model(seed: u64) -> (Model, Vec<f64>) {
         if place.len() == 4 {
             stored[place].copy_from_slice(&Quat::exp(dice.vector(1.8)).to_array());
         } else {
-            stored[place.start] = dice.within(1.2);
+            let scale = model.coordinate(id).kind == CoordinateKind::Scale;
+            stored[place.start] = if scale { 1.0 + dice.within(0.5) } else { dice.within(1.2) };
         }
     }
     (model, stored)
@@ -173,10 +203,48 @@ fn grow_component(
     number: usize,
     scalars: &mut Vec<Source>,
     transforms: &mut Vec<Source>,
+    bent: &mut HashSet<Source>,
 ) {
     let name = format!("component_{number}");
     let any = |dice: &mut Dice| scalars[dice.below(scalars.len())];
-    match dice.below(11) {
+    match dice.below(16) {
+        11 => {
+            let factor = grow_factor(b, dice, set, &name);
+            let along = match dice.below(3) {
+                0 => Along::Everywhere,
+                1 => Along::Axis(dice.axis()),
+                _ => Along::Volume(dice.axis()),
+            };
+            let scale = Component::Scale(Scale { factor, along });
+            transforms.push(b.component(set, &name, scale));
+            bent.extend(transforms.last());
+        }
+        12 => {
+            let along = dice.axis();
+            let across = along.cross(dice.vector(1.0) + Vec3::new(0.1, 0.2, 3.0)).normalized();
+            let shear = Shear { amount: any(dice), along, across };
+            transforms.push(b.component(set, &name, Component::Shear(shear)));
+            bent.extend(transforms.last());
+        }
+        13 => {
+            let u = vec![-2.0, -0.8, 0.1, 0.7, 1.8];
+            let path = [0.3, 0.1, 0.2].map(|slope| {
+                let y = u.iter().map(|u| slope * u + dice.within(0.02)).collect();
+                SimmSpline::new(u.clone(), y).unwrap()
+            });
+            let heading = Heading { forward: dice.axis(), up: Vec3::new(0.1, -0.9, 0.3) };
+            let heading = (dice.below(2) == 0).then_some(heading);
+            let track = Track { parameter: any(dice), path: Box::new(path), heading };
+            transforms.push(b.component(set, &name, Component::Curve(track)));
+        }
+        14 => {
+            let parameters = [("lift".to_owned(), vec![dice.within(0.2)])].into();
+            let inputs = vec![any(dice), any(dice)];
+            let cam = registry().make("cam", parameters, inputs).unwrap();
+            transforms.push(b.component(set, &name, Component::Custom(cam)));
+            bent.extend(transforms.last());
+        }
+        15 => grow_cone(b, dice, set, &name, scalars, transforms),
         9 => {
             let (passive, driver) = (any(dice), any(dice));
             let (lower, upper) = (dice.function(), dice.function());
@@ -214,7 +282,9 @@ fn grow_component(
         5 => transforms.push(b.place(set, &name, dice.frame())),
         6 => {
             let angles = [any(dice), any(dice), any(dice)];
-            transforms.push(b.ellipsoid(set, &name, angles, Vec3::new(0.07, 0.15, 0.09)));
+            let axis = [SurfaceAxis::OpenSim, SurfaceAxis::Normal][dice.below(2)];
+            let glide = Ellipsoid { angles, radii: Vec3::new(0.07, 0.15, 0.09), axis };
+            transforms.push(b.component(set, &name, Component::Ellipsoid(glide)));
         }
         8 => {
             let (angle, axis) = (any(dice), dice.axis());
@@ -239,10 +309,126 @@ fn grow_component(
             transforms.push(b.constant_curvature(set, &name, column));
         }
         _ if !transforms.is_empty() => {
-            let factors =
+            let factors: Vec<Source> =
                 (0..1 + dice.below(3)).map(|_| transforms[dice.below(transforms.len())]).collect();
+            let bends = factors.iter().any(|factor| bent.contains(factor));
             transforms.push(b.product(set, &name, factors));
+            bent.extend(transforms.last().filter(|_| bends));
         }
         _ => {}
+    }
+}
+
+/// A user's law that turns, lifts and, with its second input, stretches.
+#[derive(Debug)]
+pub(crate) struct Cam {
+    pub(crate) lift: f64,
+}
+
+impl Law for Cam {
+    fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
+        let (s, c) = inputs[0].sin_cos();
+        let turn = Mat3::rotation_about(Vec3::Z.cast(), (s, c));
+        let (wave, _) = inputs[1].sin_cos();
+        let stretch = Along::Axis(Vec3::X).matrix(S::one() + wave.scale(0.2));
+        let lift = (S::one() - c).scale(self.lift);
+        Affine::new(turn * stretch, Vec3::new(S::zero(), lift, S::zero()))
+    }
+
+    fn is_rigid(&self) -> bool {
+        false
+    }
+}
+
+/// An ellipsoid of the size of ribs, and points that may reach it.
+fn grow_gliding(dice: &mut Dice) -> Gliding {
+    let pose = Affine::new(Quat::exp(dice.vector(2.0)).to_mat3(), dice.vector(0.2));
+    let radii = Vec3::new(0.2, 0.35, 0.25) + dice.vector(0.08);
+    let mut pairs = vec![];
+    for k in 0..1 + dice.below(3) {
+        let first = dice.vector(0.15) + Vec3::new(0.0, 0.2, 0.0);
+        let at = [k as f64 * 0.4 - 0.3, dice.within(0.5)];
+        pairs.push(ContactPair { first, second: dice.vector(0.2), at });
+    }
+    Gliding::new(pose, radii, dice.axis(), pairs).expect("a body of ribs")
+}
+
+/// The laws that random models use.
+pub(crate) fn registry() -> Registry {
+    let mut registry = Registry::default();
+    registry.register("cam", &["angle", "wave"], |parameters| {
+        let lift = parameters.get("lift").and_then(|v| v.first());
+        Ok(Cam { lift: *lift.ok_or("it needs a `lift` in metres")? })
+    });
+    registry
+}
+
+fn grow_factor(b: &mut ModelBuilder, dice: &mut Dice, set: JointSetId, name: &str) -> Source {
+    let id = b.coordinate(set, &format!("{name}_factor"), CoordinateKind::Scale);
+    if dice.below(2) == 0 {
+        b.coordinate_mut(id).range = Range::new(0.8, 1.3);
+    }
+    id.into()
+}
+
+/// A cone about a random direction, concave as often as not, now and then larger than a hemisphere.
+fn grow_boundary(dice: &mut Dice, rest: Vec3) -> Cone {
+    let across = rest.cross(Vec3::new(0.31, -0.72, 0.62)).normalized();
+    let beside = rest.cross(across);
+    let size = [0.5, 0.9, 1.9][dice.below(3)];
+    let n = 5 + dice.below(6);
+    let twist = (dice.below(4) > 0).then_some([-0.5, 0.6]);
+    let points = (0..n).map(|i| {
+        let (s, c) = (std::f64::consts::TAU * i as f64 / n as f64).sin_cos();
+        let (far, near) = (size + dice.within(0.3 * size)).sin_cos();
+        let direction = rest * near + (across * c + beside * s) * far;
+        let own = twist.is_some() && dice.below(3) > 0;
+        let twist = own.then(|| [-0.4 + dice.within(0.2), 0.5 + dice.within(0.2)]);
+        ConePoint { direction, twist }
+    });
+    let points: Vec<ConePoint> = points.collect();
+    let projection = [Projection::Nearest, Projection::TowardRest][dice.below(2)];
+    let subdivisions = dice.below(3) as u32;
+    Cone::new(rest, twist, points.clone(), subdivisions, projection)
+        .or_else(|_| Cone::new(rest, twist, points, 0, projection))
+        .expect("the points go around their rest direction")
+}
+
+fn grow_cone(
+    b: &mut ModelBuilder,
+    dice: &mut Dice,
+    set: JointSetId,
+    name: &str,
+    scalars: &mut Vec<Source>,
+    transforms: &mut Vec<Source>,
+) {
+    if dice.below(3) == 0 {
+        let rest = dice.vector(1.0) + Vec3::new(0.0, 2.0, 0.0);
+        let cone = grow_boundary(dice, rest.normalized());
+        let q = b.coordinate(set, &format!("{name}_q"), CoordinateKind::Orientation);
+        let limit = JointCone { of: Swinging::Orientation(q.into()), cone };
+        let orientation = b.component(set, name, Component::Cone(limit));
+        let ball = Component::Ball(Ball { orientation });
+        transforms.push(b.component(set, &format!("{name}_ball"), ball));
+        return;
+    }
+    let orders = EulerOrder::ALL;
+    let order = orders[dice.below(orders.len())];
+    let axes = [0, 1, 2].map(|i| order.axis(i));
+    let angles = [(); 3].map(|()| scalars[dice.below(scalars.len())]);
+    let (of, rest) = if dice.below(3) == 0 {
+        let of = Swinging::Directions([angles[0], angles[1]], [axes[0], axes[1]]);
+        (of, axes[2])
+    } else {
+        (Swinging::Angles(angles, axes), dice.axis().normalized())
+    };
+    let count = if matches!(of, Swinging::Directions(..)) { 2 } else { 3 };
+    let cone = grow_boundary(dice, rest);
+    let limit = b.component(set, name, Component::Cone(JointCone { of, cone }));
+    let Source::Output(id, _) = limit else { return };
+    for k in 0..count {
+        let turn = b.rotate(set, &format!("{name}_{k}"), Source::Output(id, k), axes[k as usize]);
+        transforms.push(turn);
+        scalars.push(Source::Output(id, k));
     }
 }

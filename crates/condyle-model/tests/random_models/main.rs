@@ -2,10 +2,10 @@
 
 mod grow;
 mod naive;
+mod scan;
 
-use condyle_math::{Affine, Dual, Vec3};
+use condyle_math::{Affine, Dual, Mat3, Vec3};
 use condyle_model::{Jacobian, Mode, Model, Pose, Program};
-use proptest::prelude::*;
 
 /// Largest difference of any entry of two transforms.
 fn difference(a: Affine, b: Affine) -> f64 {
@@ -20,55 +20,55 @@ fn retract(model: &Model, stored: &[f64], direction: usize, step: f64) -> Vec<f6
     moved
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+/// Trees in each test.
+const TREES: u64 = 1000;
 
-    #[test]
-    fn a_program_equals_the_naive_evaluator(seed in any::<u64>()) {
+#[test]
+fn a_program_equals_the_naive_evaluator() {
+    let mut doubtful = 0;
+    for seed in 0..TREES {
         let (model, stored) = grow::random_model(seed);
         let program = Program::compile(&model);
         let mut pose = Pose::new(&program);
         for mode in [Mode::Open, Mode::Posed] {
             program.evaluate(&stored, mode, &mut pose).unwrap();
             let twin = naive::Evaluator::new(&model, &stored, mode);
-            for id in model.segment_ids() {
-                let expected = twin.segment(id);
+            let expected: Vec<Affine> = model.segment_ids().map(|id| twin.segment(id)).collect();
+            if twin.doubtful.get() {
+                doubtful += 1;
+                continue;
+            }
+            for (id, expected) in model.segment_ids().zip(expected) {
                 let scale = 1.0 + expected.translation.norm();
-                prop_assert!(difference(pose.segment(id), expected) < 1e-12 * scale);
+                let off = difference(pose.segment(id), expected);
+                assert!(off < 1e-12 * scale, "seed {seed} {mode:?} {id:?}: {off}");
             }
             for id in model.coordinate_ids() {
                 let effective = twin.coordinate(id);
                 for (a, b) in pose.coordinate(&model, id).iter().zip(effective) {
-                    prop_assert!((a - b).abs() < 1e-12 * (1.0 + b.abs()));
+                    assert!(
+                        (a - b).abs() < 1e-12 * (1.0 + b.abs()),
+                        "seed {seed} {mode:?} {id:?}: {a} {b}"
+                    );
                 }
             }
         }
     }
+    println!("{doubtful} poses with a contact near a tangency left out");
+    assert!(doubtful < TREES / 10, "{doubtful} poses with a contact near a tangency");
+}
 
-    #[test]
-    fn legal_coordinates_give_the_same_pose_in_both_modes(seed in any::<u64>()) {
-        let (model, stored) = grow::random_model(seed);
-        let program = Program::compile(&model);
-        let (mut open, mut posed) = (Pose::new(&program), Pose::new(&program));
-        program.evaluate(&stored, Mode::Posed, &mut posed).unwrap();
-        let within = posed.effective().to_vec();
-        program.evaluate(&within, Mode::Open, &mut open).unwrap();
-        // Ranges are met; the rows say whether every other limit is.
-        let legal = (0..program.limit_row_len()).all(|row| open.limit_row(row) >= 0.0);
-        if legal {
-            prop_assert_eq!(open.segments(), posed.segments());
-        }
-    }
-
-    #[test]
-    fn the_jacobian_equals_central_differences_and_duals(seed in any::<u64>()) {
+#[test]
+fn the_jacobian_equals_central_differences_and_duals() {
+    let mut rows = 0;
+    for seed in 0..TREES {
         let (model, stored) = grow::random_model(seed);
         let program = Program::compile(&model);
         let (mut pose, mut jacobian) = (Pose::new(&program), Jacobian::new(&program));
         program.evaluate_with_jacobian(&stored, &mut pose, &mut jacobian).unwrap();
         let mut plain = Pose::new(&program);
         program.evaluate(&stored, Mode::Open, &mut plain).unwrap();
-        prop_assert_eq!(plain.segments(), pose.segments());
+        assert_eq!(plain.segments(), pose.segments());
 
         let h = 1e-6;
         let point = Vec3::new(0.03, -0.11, 0.07);
@@ -76,43 +76,164 @@ proptest! {
         for direction in 0..program.tangent_len() {
             let mut ahead = Pose::new(&program);
             let mut behind = Pose::new(&program);
-            program.evaluate(&retract(&model, &stored, direction, h), Mode::Open, &mut ahead).unwrap();
-            program.evaluate(&retract(&model, &stored, direction, -h), Mode::Open, &mut behind).unwrap();
+            program
+                .evaluate(&retract(&model, &stored, direction, h), Mode::Open, &mut ahead)
+                .unwrap();
+            program
+                .evaluate(&retract(&model, &stored, direction, -h), Mode::Open, &mut behind)
+                .unwrap();
             // Seeding the stored numbers with the retraction's slope makes the dual answer exact.
-            let slope: Vec<f64> = retract(&model, &stored, direction, 1e-5).iter()
+            let slope: Vec<f64> = retract(&model, &stored, direction, 1e-5)
+                .iter()
                 .zip(retract(&model, &stored, direction, -1e-5))
-                .map(|(a, b)| (a - b) / 2e-5).collect();
-            let seeded: Vec<Dual<1>> = stored.iter().zip(slope)
-                .map(|(&value, s)| Dual { value, partials: [s] }).collect();
+                .map(|(a, b)| (a - b) / 2e-5)
+                .collect();
+            let seeded: Vec<Dual<1>> =
+                stored.iter().zip(slope).map(|(&value, s)| Dual { value, partials: [s] }).collect();
             program.evaluate(&seeded, Mode::Open, &mut dual_pose).unwrap();
+            for row in 0..program.limit_row_len() {
+                let exact = program
+                    .limit_row_directions(row)
+                    .iter()
+                    .filter(|(d, _)| *d as usize == direction)
+                    .map(|(_, slot)| jacobian.derivative(*slot))
+                    .sum::<f64>();
+                let (up, here, down) =
+                    (ahead.limit_row(row), plain.limit_row(row), behind.limit_row(row));
+                // Where the two sides differ there is a kink: a corner of a cone, a free twist.
+                let sides = [(up - here) / h, (here - down) / h];
+                if (sides[0] - sides[1]).abs() < 1e-3 * (1.0 + exact.abs()) {
+                    let difference = (up - down) * (0.5 / h);
+                    assert!(
+                        (exact - difference).abs() < 1e-7 * (1.0 + exact.abs()),
+                        "seed {seed}: row {row} {direction}: {exact} {difference}"
+                    );
+                    rows += 1;
+                }
+                let dual = dual_pose.limit_row(row).partials[0];
+                assert!(
+                    (exact - dual).abs() < 1e-9 * (1.0 + exact.abs()),
+                    "seed {seed}: row {row}"
+                );
+            }
             for id in model.segment_ids() {
                 let world = pose.segment(id) * point;
                 let mut exact = Vec3::ZERO;
                 jacobian.visit_point(&program, Some(id), world, |d, v| {
-                    if d == direction { exact = v; }
+                    if d == direction {
+                        exact = v;
+                    }
                 });
                 let difference =
                     (ahead.segment(id) * point - behind.segment(id) * point) * (0.5 / h);
                 let size = 1.0 + exact.norm() + world.norm();
-                prop_assert!((exact - difference).norm() < 1e-7 * size, "{direction} {id:?}");
+                assert!(
+                    (exact - difference).norm() < 1e-7 * size,
+                    "seed {seed}: {direction} {id:?}"
+                );
                 let dual = dual_pose.segment(id) * point.cast();
                 let dual = Vec3::new(dual.x.partials[0], dual.y.partials[0], dual.z.partials[0]);
-                prop_assert!((exact - dual).norm() < 1e-9 * size, "{direction} {id:?}");
+                assert!((exact - dual).norm() < 1e-9 * size, "seed {seed}: {direction} {id:?}");
             }
+        }
+    }
+    assert!(rows > 1000, "only {rows} rows away from kinks");
+}
+
+#[test]
+fn legal_coordinates_give_the_same_pose_in_both_modes() {
+    let mut legal = 0;
+    for seed in 0..TREES {
+        let (model, stored) = grow::random_model(seed);
+        let program = Program::compile(&model);
+        let (mut open, mut posed) = (Pose::new(&program), Pose::new(&program));
+        program.evaluate(&stored, Mode::Posed, &mut posed).unwrap();
+        let within = posed.effective().to_vec();
+        program.evaluate(&within, Mode::Open, &mut open).unwrap();
+        program.evaluate(&within, Mode::Posed, &mut posed).unwrap();
+        // A limit may push a coordinate out of its range, or break another limit.
+        let in_range = model.coordinate_ids().all(|id| {
+            let coordinate = model.coordinate(id);
+            let value = within[model.stored_range(id).start];
+            coordinate.follows.is_some() || coordinate.range.distance(value) >= 0.0
+        });
+        if in_range && (0..program.limit_row_len()).all(|row| open.limit_row(row) >= 0.0) {
+            legal += 1;
+            assert_eq!(open.segments(), posed.segments(), "seed {seed}");
+            assert_eq!(open.effective(), posed.effective(), "seed {seed}");
+        }
+    }
+    assert!(legal > TREES / 2, "only {legal} of {TREES} were legal");
+}
+
+#[test]
+fn normals_stay_perpendicular_to_what_is_stretched() {
+    let mut stretched = 0;
+    for seed in 0..TREES {
+        let (model, stored) = grow::random_model(seed);
+        let program = Program::compile(&model);
+        let mut pose = Pose::new(&program);
+        program.evaluate(&stored, Mode::Posed, &mut pose).unwrap();
+        let mut normals = vec![Mat3::IDENTITY; program.normal_len()];
+        program.normals(&pose, &mut normals).unwrap();
+        for id in model.segment_ids() {
+            let (linear, normal) = (pose.segment(id).linear, normals[id.index()]);
+            stretched += usize::from(program.deforms(id));
+            let expected = linear.inverse().transpose();
+            for i in 0..9 {
+                let off = normal.at(i / 3, i % 3) - expected.at(i / 3, i % 3);
+                let size = 1.0 + expected.x.norm() + expected.y.norm() + expected.z.norm();
+                assert!(off.abs() < 1e-9 * size, "seed {seed} {id:?}: {off}");
+            }
+        }
+    }
+    assert!(stretched > 500, "only {stretched} segments were stretched");
+}
+
+#[test]
+fn a_world_placed_elsewhere_carries_everything_along() {
+    let camera = Affine::new(
+        Mat3::rotation_about(Vec3::new(0.6, 0.0, 0.8), 0.9f64.sin_cos()),
+        Vec3::new(0.3, -1.2, 4.0),
+    );
+    for seed in 0..TREES {
+        let (model, stored) = grow::random_model(seed);
+        let program = Program::compile(&model);
+        let (mut here, mut there) = (Pose::new(&program), Pose::new(&program));
+        there.place(camera);
+        program.evaluate(&stored, Mode::Posed, &mut here).unwrap();
+        program.evaluate(&stored, Mode::Posed, &mut there).unwrap();
+        for id in model.segment_ids() {
+            let expected = camera * here.segment(id);
+            let size = 1.0 + expected.translation.norm();
+            assert!(difference(there.segment(id), expected) < 1e-12 * size, "seed {seed} {id:?}");
         }
     }
 }
 
 #[test]
-fn absurd_numbers_pose_without_a_panic() {
-    for seed in 0..200 {
+fn a_million_poses_are_finite_whatever_is_asked() {
+    let sizes = [0.0, -0.0, 1.0, 1e3, 1e12, 1e300, f64::INFINITY, f64::NAN, 1e-320];
+    for seed in 0..TREES {
         let (model, stored) = grow::random_model(seed);
         let program = Program::compile(&model);
         let mut pose = Pose::new(&program);
-        for absurd in [0.0, -0.0, 1e300, -1e300, f64::INFINITY, f64::NAN, 1e-320] {
-            let coordinates = vec![absurd; stored.len()];
-            program.evaluate(&coordinates, Mode::Open, &mut pose).unwrap();
-            program.evaluate(&coordinates, Mode::Posed, &mut pose).unwrap();
+        let mut dice = grow::Dice::new(seed ^ 0x5eed);
+        let mut asked = stored.clone();
+        for number in 0..1000 {
+            for value in &mut asked {
+                // Half of the numbers as a person would ask for them, the rest of any size.
+                let size = if number % 2 == 0 { 3.0 } else { sizes[dice.below(sizes.len())] };
+                *value = if size.is_finite() { dice.within(size) } else { size };
+            }
+            for mode in [Mode::Open, Mode::Posed] {
+                program.evaluate(&asked, mode, &mut pose).unwrap();
+                for (id, segment) in model.segment_ids().zip(pose.segments()) {
+                    let finite = segment.to_rows().iter().all(|x| x.is_finite());
+                    assert!(finite, "seed {seed} {mode:?} {id:?}: {segment:?} at {asked:?}");
+                }
+                assert!(pose.effective().iter().all(|x| x.is_finite()), "seed {seed} {asked:?}");
+            }
         }
         let wrong = program.evaluate(&vec![0.0; stored.len() + 1], Mode::Open, &mut pose);
         assert_eq!(wrong.unwrap_err().found, stored.len() + 1);

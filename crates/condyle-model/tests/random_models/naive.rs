@@ -1,18 +1,53 @@
 //! The slow and obvious twin of a program: every value is computed afresh by walking the model.
 
-use condyle_math::{Affine, Mat3, Quat, Vec3};
-use condyle_model::component::{Centre, Component, Law};
+use super::scan;
+use condyle_math::{Affine, EulerOrder, Mat3, Quat, Vec3};
+use condyle_model::component::{
+    Along, Centre, Component, Contact, ContactPair, JointCone, Law, SurfaceAxis, Swinging,
+};
+use condyle_model::model::ComponentId;
 use condyle_model::{CoordinateId, Mode, Model, SegmentId, Source};
+use std::cell::Cell;
+use std::collections::HashSet;
+use std::f64::consts::{PI, TAU};
 
 pub(crate) struct Evaluator<'a> {
     model: &'a Model,
     stored: &'a [f64],
     mode: Mode,
+    needed: HashSet<ComponentId>,
+    /// Set where a contact is so near to a tangency that its angle means little.
+    pub(crate) doubtful: Cell<bool>,
+}
+
+/// What a limit holds: one source for each of its outputs.
+fn held(model: &Model, limit: ComponentId) -> Vec<Source> {
+    match &model.components()[limit.index()].component {
+        Component::Depend(c) => vec![c.passive],
+        Component::Cone(c) => match &c.of {
+            Swinging::Angles(sources, _) => sources.to_vec(),
+            Swinging::Directions(sources, _) => sources.to_vec(),
+            Swinging::Orientation(source) => vec![*source],
+        },
+        _ => vec![],
+    }
 }
 
 impl<'a> Evaluator<'a> {
     pub(crate) fn new(model: &'a Model, stored: &'a [f64], mode: Mode) -> Self {
-        Self { model, stored, mode }
+        // What segments and followers read, directly or not.
+        let mut needed = HashSet::new();
+        let followed = model.coordinates().iter().filter_map(|c| c.follows);
+        let mut open: Vec<Source> =
+            model.segments().iter().filter_map(|s| s.motion).chain(followed).collect();
+        while let Some(source) = open.pop() {
+            if let Source::Output(id, _) = source
+                && needed.insert(id)
+            {
+                open.extend(model.reads(id));
+            }
+        }
+        Self { model, stored, mode, needed, doubtful: Cell::new(false) }
     }
 
     pub(crate) fn coordinate(&self, id: CoordinateId) -> Vec<f64> {
@@ -20,6 +55,15 @@ impl<'a> Evaluator<'a> {
         if let Some(leader) = coordinate.follows {
             return vec![self.scalar(leader)];
         }
+        match self.last_limit(id) {
+            Some((_, limit, output)) => self.numbers(Source::Output(limit, output)),
+            None => self.asked(id),
+        }
+    }
+
+    /// What was asked for, inside the range in posed mode.
+    fn asked(&self, id: CoordinateId) -> Vec<f64> {
+        let coordinate = self.model.coordinate(id);
         let mut values = self.stored[self.model.stored_range(id)].to_vec();
         if self.mode == Mode::Posed && values.len() == 1 {
             values[0] = coordinate.range.nearest(values[0]);
@@ -27,9 +71,118 @@ impl<'a> Evaluator<'a> {
         values
     }
 
+    /// The limit farthest along the way from a coordinate, among those that something reads.
+    fn last_limit(&self, id: CoordinateId) -> Option<(usize, ComponentId, u32)> {
+        let mut best: Option<(usize, ComponentId, u32)> = None;
+        for limit in self.model.component_ids().filter(|id| self.needed.contains(id)) {
+            for (output, source) in held(self.model, limit).into_iter().enumerate() {
+                let Some(depth) = self.limits_between(id, source) else { continue };
+                let found = (depth + 1, limit, output as u32);
+                if best.is_none_or(|(depth, limit, _)| (found.0, found.1) >= (depth, limit)) {
+                    best = Some(found);
+                }
+            }
+        }
+        best
+    }
+
+    /// How many limits lie between a coordinate and a source that is this coordinate, held.
+    fn limits_between(&self, id: CoordinateId, source: Source) -> Option<usize> {
+        match source {
+            Source::Coordinate(other) => (other == id).then_some(0),
+            Source::Output(limit, output) => {
+                let source = *held(self.model, limit).get(output as usize)?;
+                self.limits_between(id, source).map(|depth| depth + 1)
+            }
+        }
+    }
+
+    /// The numbers of a scalar or an orientation.
+    fn numbers(&self, source: Source) -> Vec<f64> {
+        match source {
+            Source::Coordinate(id) if self.model.coordinate(id).follows.is_none() => self.asked(id),
+            Source::Coordinate(id) => self.coordinate(id),
+            Source::Output(id, output) => match &self.model.components()[id.index()].component {
+                Component::Cone(cone) => self.cone(cone, output),
+                _ => vec![self.scalar(source)],
+            },
+        }
+    }
+
+    /// One output of a cone: the legal rotation taken apart by Euler angles, all wraps tried.
+    fn cone(&self, cone: &JointCone, output: u32) -> Vec<f64> {
+        let limit = &cone.cone;
+        let (sources, axes) = match &cone.of {
+            Swinging::Orientation(source) => {
+                let q = self.numbers(*source);
+                let q = Quat::from(<[f64; 4]>::try_from(q).unwrap());
+                let legal = limit.legal(q.normalized().to_mat3());
+                if self.mode == Mode::Open || !legal.moved {
+                    return q.to_array().to_vec();
+                }
+                let found = Quat::from_mat3(legal.rotation).to_array();
+                let same: f64 = found.iter().zip(q.to_array()).map(|(a, b)| a * b).sum();
+                return found.map(|x| x * same.signum()).to_vec();
+            }
+            Swinging::Angles(sources, axes) => (sources.to_vec(), *axes),
+            Swinging::Directions(sources, [a, b]) => (sources.to_vec(), [*a, *b, limit.rest()]),
+        };
+        let asked: Vec<f64> = sources.iter().map(|&s| self.scalar(s)).collect();
+        if self.mode == Mode::Open {
+            return vec![asked[output as usize]];
+        }
+        let turn = |angles: &[f64]| {
+            angles.iter().zip(axes).fold(Mat3::IDENTITY, |turned, (&angle, axis)| {
+                turned * Quat::from_axis_angle(axis, angle).to_mat3()
+            })
+        };
+        let two = sources.len() == 2;
+        let legal = if two {
+            let direction = turn(&asked) * limit.rest();
+            if limit.contains(direction) {
+                return vec![asked[output as usize]];
+            }
+            // Any rotation that carries the rest direction there will do.
+            let to = limit.project(direction).direction;
+            let about = limit.rest().cross(to);
+            let angle = about.norm().atan2(limit.rest().dot(to));
+            let some = if about.norm() > 1e-9 { about.normalized() } else { axes[1] };
+            Quat::from_axis_angle(some, angle).to_mat3()
+        } else {
+            let legal = limit.legal(turn(&asked));
+            if !legal.moved {
+                return vec![asked[output as usize]];
+            }
+            legal.rotation
+        };
+        let name =
+            |axis: Vec3| ["x", "y", "z"][axis.to_array().iter().position(|c| *c != 0.0).unwrap()];
+        let sign = |axis: Vec3| axis.to_array().iter().sum::<f64>();
+        let order: EulerOrder = axes.map(name).concat().parse().unwrap();
+        let found = order.from_mat3(legal);
+        let signs = axes.map(sign);
+        let found: [f64; 3] = std::array::from_fn(|i| found[i] * signs[i]);
+        // The other triple: the middle angle on the other side, half a turn on both others.
+        let returns = order.axes()[0] == order.axes()[2];
+        let middle = if returns { -found[1] } else { PI - found[1] };
+        let other = [found[0] + PI, middle, found[2] + PI];
+        let near = |angles: [f64; 3]| -> (f64, Vec<f64>) {
+            let angles = asked.iter().zip(angles).map(|(&asked, angle)| {
+                (-3..=3)
+                    .map(|turns| angle + f64::from(turns) * TAU)
+                    .min_by(|a, b| (a - asked).abs().total_cmp(&(b - asked).abs()))
+                    .unwrap()
+            });
+            let angles: Vec<f64> = angles.collect();
+            (angles.iter().zip(&asked).map(|(a, b)| (a - b) * (a - b)).sum(), angles)
+        };
+        let ((far, found), (other_far, other)) = (near(found), near(other));
+        vec![if other_far < far { other[output as usize] } else { found[output as usize] }]
+    }
+
     fn scalar(&self, source: Source) -> f64 {
         match source {
-            Source::Coordinate(id) => self.coordinate(id)[0],
+            Source::Coordinate(_) => self.numbers(source)[0],
             Source::Output(id, output) => match &self.model.components()[id.index()].component {
                 Component::Map(map) => {
                     let x = self.scalar(map.input);
@@ -48,9 +201,58 @@ impl<'a> Evaluator<'a> {
                     let x: Vec<f64> = combine.inputs.iter().map(|&s| self.scalar(s)).collect();
                     combine.function.apply(&x)
                 }
+                Component::Cone(cone) => self.cone(cone, output)[0],
                 other => panic!("{} is no scalar", other.kind()),
             },
         }
+    }
+
+    /// The two turns of a contact, found by scanning.
+    fn contact(&self, c: &Contact) -> Affine {
+        let law = &c.law;
+        let segment = self.model.segment(c.segment);
+        let parent = self.segment(segment.parent.expect("below its surface"));
+        let before = c.before.map_or(Affine::IDENTITY, |source| self.transform(source));
+        let surface = self.segment(c.surface) * law.ellipsoid_in_surface();
+        // What is above the surface may stretch it; what lies between is rigid.
+        let back = surface.linear.inverse();
+        let back = Affine::new(back, -(back * surface.translation));
+        let pose = back * parent * segment.joint_in_parent * before;
+        let drivers: Vec<f64> = c.drivers.iter().map(|&d| self.scalar(d)).collect();
+        let [first, second] = self.blended(law.pairs(), &drivers);
+        let theta = scan::turn(pose, law.radii(), law.axis(), first);
+        let about_axis = Quat::from_axis_angle(law.axis(), theta.angle).to_mat3();
+        let turned = pose * Affine::from_rotation(about_axis);
+        let psi = scan::turn(turned, law.radii(), first.normalized(), second);
+        if theta.doubtful || psi.doubtful {
+            self.doubtful.set(true);
+        }
+        let about_first = Quat::from_axis_angle(first.normalized(), psi.angle).to_mat3();
+        Affine::from_rotation(about_axis * about_first)
+    }
+
+    /// Pairs weighted by the inverse squares of their distances.
+    fn blended(&self, pairs: &[ContactPair], drivers: &[f64]) -> [Vec3; 2] {
+        let smooth = |k: usize, x: f64| {
+            let places = pairs.iter().map(|pair| pair.at[k]);
+            let (low, high) =
+                places.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+            let share = if high > low { ((x - low) / (high - low)).clamp(0.0, 1.0) } else { 0.0 };
+            share * share * (3.0 - 2.0 * share)
+        };
+        let driver = |k: usize| smooth(k, drivers.get(k).copied().unwrap_or(0.0));
+        let far = |pair: &ContactPair| {
+            let off = [0, 1].map(|k: usize| driver(k) - smooth(k, pair.at[k]));
+            off[0] * off[0] + off[1] * off[1]
+        };
+        if let Some(hit) = pairs.iter().find(|pair| far(pair) == 0.0) {
+            return [hit.first, hit.second];
+        }
+        let sum: f64 = pairs.iter().map(|pair| 1.0 / far(pair)).sum();
+        let blend = |pick: fn(&ContactPair) -> Vec3| {
+            pairs.iter().fold(Vec3::ZERO, |v, pair| v + pick(pair) * (1.0 / far(pair) / sum))
+        };
+        [blend(|pair| pair.first), blend(|pair| pair.second)]
     }
 
     fn transform(&self, source: Source) -> Affine {
@@ -93,10 +295,7 @@ impl<'a> Evaluator<'a> {
                 Centre::Path(_) => c.transform(&[self.scalar(c.angle)]),
             },
             Component::Ball(c) => {
-                let Source::Coordinate(id) = c.orientation else {
-                    panic!("a ball takes a coordinate")
-                };
-                let q: [f64; 4] = self.coordinate(id).try_into().unwrap();
+                let q: [f64; 4] = self.numbers(c.orientation).try_into().unwrap();
                 Affine::from_rotation(Quat::from(q).normalized().to_mat3())
             }
             Component::Place(c) => c.child_in_parent,
@@ -136,8 +335,72 @@ impl<'a> Evaluator<'a> {
                 let r = Mat3::rotation_x(a) * Mat3::rotation_y(b) * Mat3::rotation_z(g);
                 let n = r * Vec3::Z;
                 let [rx, ry, rz] = c.radii.to_array();
-                Affine::new(r, Vec3::new(rx * n.x, ry * n.y, rz * n.z))
+                let place = Vec3::new(rx * n.x, ry * n.y, rz * n.z);
+                Affine::new(
+                    r,
+                    match c.axis {
+                        SurfaceAxis::OpenSim => place,
+                        // Where the normal of x²/a² + … is n: x = a²·n/√(a²n² + …).
+                        SurfaceAxis::Normal => {
+                            let size =
+                                (rx * rx * n.x * n.x + ry * ry * n.y * n.y + rz * rz * n.z * n.z)
+                                    .sqrt();
+                            Vec3::new(rx * rx * n.x, ry * ry * n.y, rz * rz * n.z) * (1.0 / size)
+                        }
+                    },
+                )
             }
+            Component::Scale(c) => {
+                // As the source has it for a principal axis, in a frame turned so that it is one.
+                let s = self.scalar(c.factor).max(1e-6);
+                let (axis, diagonal) = match c.along {
+                    Along::Everywhere => (Vec3::X, [s, s, s]),
+                    Along::Axis(axis) => (axis, [s, 1.0, 1.0]),
+                    Along::Volume(axis) => (axis, [s, s.powf(-0.5), s.powf(-0.5)]),
+                };
+                let beside = axis.cross(Vec3::new(0.2, 0.5, -0.9)).normalized();
+                let turn = Mat3::from_columns(axis, beside, axis.cross(beside));
+                let stretch = Mat3::from_columns(
+                    Vec3::X * diagonal[0],
+                    Vec3::Y * diagonal[1],
+                    Vec3::Z * diagonal[2],
+                );
+                Affine::new(turn * stretch * turn.transpose(), Vec3::ZERO)
+            }
+            Component::Shear(c) => {
+                let slide =
+                    |unit: Vec3| unit + c.along * (self.scalar(c.amount) * c.across.dot(unit));
+                let [x, y, z] = Vec3::UNITS.map(slide);
+                Affine::new(Mat3::from_columns(x, y, z), Vec3::ZERO)
+            }
+            Component::Curve(c) => {
+                let u = self.scalar(c.parameter);
+                let along = |order: usize| {
+                    Vec3::from([0, 1, 2].map(|k: usize| c.path[k].derivatives(u)[order]))
+                };
+                let Some(heading) = c.heading else { return Affine::from_translation(along(0)) };
+                // Carry forward onto the tangent, then turn about it until up is as near as it gets.
+                let (forward, tangent) = (heading.forward.normalized(), along(1).normalized());
+                let about = forward.cross(tangent);
+                let angle = about.norm().atan2(forward.dot(tangent));
+                let some = if about.norm() > 1e-9 { about.normalized() } else { Vec3::Y };
+                let swing = Quat::from_axis_angle(some, angle).to_mat3();
+                let flat = |v: Vec3| (v - tangent * v.dot(tangent)).normalized();
+                let own = (heading.up - forward * heading.up.dot(forward)).normalized();
+                let (is, should) = (flat(swing * own), flat(heading.up));
+                let roll = tangent.dot(is.cross(should)).atan2(is.dot(should));
+                let roll = Quat::from_axis_angle(tangent, roll).to_mat3();
+                Affine::new(roll * swing, along(0))
+            }
+            Component::Custom(c) => {
+                // The formula of the law, written out.
+                let [angle, wave] = [0, 1].map(|i: usize| self.scalar(c.inputs[i]));
+                let lift = c.parameters["lift"][0] * (1.0 - angle.cos());
+                let turn = Quat::from_axis_angle(Vec3::Z, angle).to_mat3();
+                let wide = Mat3::from_columns(Vec3::X * (1.0 + 0.2 * wave.sin()), Vec3::Y, Vec3::Z);
+                Affine::new(turn * wide, Vec3::Y * lift)
+            }
+            Component::Contact(c) => self.contact(c),
             Component::ConstantCurvature(c) => c.transform(&c.angles.map(|s| self.scalar(s))),
             other => panic!("{} is no transform", other.kind()),
         }

@@ -1,7 +1,13 @@
 //! What makes a model whole: names, types, places and circles, checked once when it is built.
 
-use super::{ComponentId, CoordinateId, CoordinateKind, Model, SegmentId};
-use crate::component::{Compensate, Component, MOST_COMBINED, PortType, Source};
+mod component;
+mod order;
+
+pub(crate) use order::{Node, dependency_order};
+
+use super::{CoordinateId, CoordinateKind, Model, SegmentId};
+use crate::component::{PortType, Source};
+use component::check_components;
 use std::collections::HashMap;
 use std::fmt;
 
@@ -214,109 +220,6 @@ fn check_coordinates(model: &Model, findings: &mut Vec<Finding>) {
     }
 }
 
-fn check_components(model: &Model, findings: &mut Vec<Finding>) {
-    for named in &model.components {
-        let place = format!(
-            "component `{}` ({}) of joint set `{}`",
-            named.name,
-            named.component.kind(),
-            model.joint_sets[named.joint_set.index()].name
-        );
-        for (port, expected, source) in named.component.inputs() {
-            let found = source_type(model, source);
-            if found != expected {
-                findings.push(finding(
-                    Severity::Error,
-                    "model/port-type",
-                    format!("port `{port}` of {place} gets a {found:?}").to_lowercase(),
-                    format!("connect a {expected:?}").to_lowercase(),
-                ));
-            }
-        }
-        let axis = match &named.component {
-            Component::Rotate(c) => Some(c.axis),
-            Component::Translate(c) => Some(c.axis),
-            _ => None,
-        };
-        if let Some(axis) = axis {
-            let length = axis.norm();
-            if !(length.is_finite() && length > 1e-9) {
-                findings.push(finding(
-                    Severity::Error,
-                    "model/axis",
-                    format!("the axis of {place} has length {length}"),
-                    "give a direction, such as [0, 0, 1]",
-                ));
-            } else if (length - 1.0).abs() > 1e-6 {
-                findings.push(finding(
-                    Severity::Warning,
-                    "model/axis-length",
-                    format!("the axis of {place} has length {length}"),
-                    "it is normalised; write it with length 1 to silence this",
-                ));
-            }
-        }
-        if let Component::Compensate(c) = &named.component {
-            check_compensate(model, &place, c, findings);
-        }
-        if let Component::Combine(c) = &named.component
-            && c.inputs.len() != c.function.arity()
-        {
-            findings.push(finding(
-                Severity::Error,
-                "model/arity",
-                format!(
-                    "{place} has {} inputs but its function takes {}",
-                    c.inputs.len(),
-                    c.function.arity()
-                ),
-                "connect as many inputs as the function has arguments",
-            ));
-        }
-        if let Component::Combine(c) = &named.component
-            && c.inputs.len() > MOST_COMBINED
-        {
-            findings.push(finding(
-                Severity::Error,
-                "model/arity",
-                format!("{place} has {} inputs", c.inputs.len()),
-                format!("combine at most {MOST_COMBINED} scalars at a time"),
-            ));
-        }
-    }
-}
-
-fn check_compensate(model: &Model, place: &str, c: &Compensate, findings: &mut Vec<Finding>) {
-    if !(0.0..=1.0).contains(&c.weight) {
-        findings.push(finding(
-            Severity::Error,
-            "model/weight",
-            format!("{place} has the weight {}", c.weight),
-            "give a weight from 0 (nothing is undone) to 1 (all is)",
-        ));
-    }
-    let mut ancestors = vec![];
-    let mut here = model.segment(c.segment).parent;
-    while let Some(id) = here
-        && ancestors.len() < model.segments.len()
-    {
-        ancestors.push(id);
-        here = model.segment(id).parent;
-    }
-    for id in c.ancestors.iter().filter(|id| !ancestors.contains(id)) {
-        findings.push(finding(
-            Severity::Error,
-            "model/not-an-ancestor",
-            format!(
-                "{place} compensates `{}`, which is no ancestor of `{}`",
-                model.segment(*id).name,
-                model.segment(c.segment).name
-            ),
-            "name segments on the way from this one to the root",
-        ));
-    }
-}
-
 fn source_type(model: &Model, source: Source) -> PortType {
     match source {
         Source::Coordinate(id) => match model.coordinate(id).kind {
@@ -325,88 +228,4 @@ fn source_type(model: &Model, source: Source) -> PortType {
         },
         Source::Output(id, _) => model.components[id.index()].component.outputs().0,
     }
-}
-
-/// One thing that is computed: a coordinate's effective value, or a component.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Node {
-    Coordinate(CoordinateId),
-    Component(ComponentId),
-}
-
-/// Coordinates and components in an order in which each comes after what it reads.
-///
-/// Order and circles are settled over the whole model, per component and never per bone.
-///
-/// # Errors
-/// The names along a circle, the first one repeated at the end.
-pub(crate) fn dependency_order(model: &Model) -> Result<Vec<Node>, Vec<String>> {
-    let coordinates = model.coordinates.len();
-    let number = |source: Source| match source {
-        Source::Coordinate(id) => id.index(),
-        Source::Output(id, _) => coordinates + id.index(),
-    };
-    let reads = |node: usize| -> Vec<usize> {
-        if node < coordinates {
-            model.coordinates[node].follows.into_iter().map(number).collect()
-        } else {
-            let id = ComponentId((node - coordinates) as u32);
-            model.reads(id).into_iter().map(number).collect()
-        }
-    };
-    let name = |node: usize| {
-        if node < coordinates {
-            model.coordinate_key(CoordinateId(node as u32))
-        } else {
-            let named = &model.components[node - coordinates];
-            format!("{}.{}", model.joint_sets[named.joint_set.index()].name, named.name)
-        }
-    };
-    #[derive(Clone, Copy, PartialEq)]
-    enum Mark {
-        New,
-        Open,
-        Done,
-    }
-    let total = coordinates + model.components.len();
-    let mut marks = vec![Mark::New; total];
-    let mut order = Vec::with_capacity(total);
-    // Depth first with an explicit stack: a node, what it reads, and how much of that is done.
-    let mut stack: Vec<(usize, Vec<usize>, usize)> = Vec::new();
-    for root in 0..total {
-        if marks[root] != Mark::New {
-            continue;
-        }
-        marks[root] = Mark::Open;
-        stack.push((root, reads(root), 0));
-        while let Some((node, inputs, done)) = stack.last_mut() {
-            let Some(&next) = inputs.get(*done) else {
-                marks[*node] = Mark::Done;
-                order.push(if *node < coordinates {
-                    Node::Coordinate(CoordinateId(*node as u32))
-                } else {
-                    Node::Component(ComponentId((*node - coordinates) as u32))
-                });
-                stack.pop();
-                continue;
-            };
-            *done += 1;
-            match marks[next] {
-                Mark::Done => {}
-                Mark::New => {
-                    marks[next] = Mark::Open;
-                    stack.push((next, reads(next), 0));
-                }
-                Mark::Open => {
-                    let from = stack.iter().position(|(n, ..)| *n == next).unwrap_or(0);
-                    let mut names: Vec<String> =
-                        stack[from..].iter().map(|(n, ..)| name(*n)).collect();
-                    names.reverse();
-                    names.insert(0, name(next));
-                    return Err(names);
-                }
-            }
-        }
-    }
-    Ok(order)
 }

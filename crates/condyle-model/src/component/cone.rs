@@ -1,0 +1,256 @@
+//! The angles of a ball joint, or its orientation, held inside a joint cone (Shao & Ng-Thow-Hing
+//! 2003, section 4.6).
+//!
+//! The angles make R = R(a₁, θ₁)·R(a₂, θ₂)·R(a₃, θ₃); the [`Cone`] judges where R carries the bone and
+//! how it turns about itself. In posed mode illegal angles become those of the nearest legal rotation
+//! (or of the one towards rest), so that a [`Pivot`](super::Pivot) after the cone takes its centre at
+//! the legal angle. Of the two triples of angles that make a rotation the one nearest to what was
+//! asked for is taken. In open mode the angles pass, and up to three rows say how far inside they are:
+//! the swing from the boundary, the twist from its lower and from its upper bound.
+//!
+//! The second axis must be perpendicular to both others: then every rotation has angles,
+//!
+//! ```text
+//! w = R·a₃,  λ = angle from a₁ to a₃ about a₂
+//! cos(θ₂ + λ) = w·a₁,  θ₁ = atan2(w·a₂, -w·(a₁ × a₂))·sign,  θ₃ = turn of a₂ left over
+//! ```
+//!
+//! With two angles and no third the bone only swings: the rest direction takes the place of a₃.
+//!
+//! Kinks: in posed mode at the boundary. There the derivative of held angles is taken as 0; solvers
+//! work in open mode.
+
+use super::Source;
+use crate::limit::Cone;
+use condyle_math::{Mat3, Quat, Vec3};
+use std::f64::consts::TAU;
+
+/// A ball joint that stays inside a cone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointCone {
+    /// What is held.
+    pub of: Swinging,
+    /// Inside what.
+    pub cone: Cone,
+}
+
+/// What a [`JointCone`] holds.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Swinging {
+    /// Three angles in radians and their axes, in the order of the product.
+    Angles([Source; 3], [Vec3; 3]),
+    /// Two angles and their axes: the bone does not turn about itself.
+    Directions([Source; 2], [Vec3; 2]),
+    /// A unit quaternion.
+    Orientation(Source),
+}
+
+/// How one row of a cone changes: its value, and its slope along each angle or direction.
+pub(crate) type ConeRow = (f64, [f64; 3]);
+
+impl JointCone {
+    /// How many numbers it reads and gives.
+    pub fn len(&self) -> usize {
+        match &self.of {
+            Swinging::Angles(..) => 3,
+            Swinging::Directions(..) => 2,
+            Swinging::Orientation(_) => 4,
+        }
+    }
+
+    /// Never: a cone always holds something.
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// How many rows it has in open mode.
+    pub fn rows(&self) -> usize {
+        let twisting = !matches!(self.of, Swinging::Directions(..));
+        if twisting && self.cone.twist_at_rest().is_some() { 3 } else { 1 }
+    }
+
+    /// The axes as three: the rest direction stands for a third that is not there.
+    fn axes(&self) -> Option<[Vec3; 3]> {
+        match &self.of {
+            Swinging::Angles(_, axes) => Some(axes.map(Vec3::normalized)),
+            Swinging::Directions(_, [a, b]) => {
+                Some([a.normalized(), b.normalized(), self.cone.rest()])
+            }
+            Swinging::Orientation(_) => None,
+        }
+    }
+
+    /// The sine of the angle by which the second axis misses being perpendicular to the others.
+    pub fn obliqueness(&self) -> f64 {
+        self.axes().map_or(0.0, |[a, b, c]| a.dot(b).abs().max(c.dot(b).abs()))
+    }
+
+    /// The rotation of these numbers, with the axis about which each turns it in the parent.
+    fn rotation(&self, numbers: &[f64]) -> (Mat3, [Vec3; 3]) {
+        let Some(axes) = self.axes() else {
+            let q: [f64; 4] = std::array::from_fn(|i| numbers[i]);
+            let turned = Quat::from(q).to_mat3();
+            return (turned, [turned.x, turned.y, turned.z]);
+        };
+        let mut turned = Mat3::IDENTITY;
+        let mut moving = [Vec3::ZERO; 3];
+        for ((angle, axis), out) in numbers.iter().zip(axes).zip(&mut moving) {
+            *out = turned * axis;
+            turned = turned * Mat3::rotation_about(axis, angle.sin_cos());
+        }
+        (turned, moving)
+    }
+
+    /// The legal numbers for those asked for: `None` if they are legal.
+    pub(crate) fn legal(&self, asked: &[f64]) -> Option<[f64; 4]> {
+        let (rotation, _) = self.rotation(asked);
+        if let Swinging::Directions(..) = self.of {
+            let direction = rotation * self.cone.rest();
+            if self.cone.contains(direction) {
+                return None;
+            }
+            return Some(self.angles(self.cone.project(direction).direction, None, asked));
+        }
+        let legal = self.cone.legal(rotation);
+        if !legal.moved {
+            return None;
+        }
+        Some(match self.axes() {
+            Some([.., third]) => self.angles(legal.rotation * third, Some(legal.rotation), asked),
+            None => {
+                // Of q and -q the one nearer to what was asked.
+                let q = Quat::from_mat3(legal.rotation).to_array();
+                let same: f64 = q.iter().zip(asked).map(|(a, b)| a * b).sum();
+                if same < 0.0 { q.map(|x| -x) } else { q }
+            }
+        })
+    }
+
+    /// The angles that carry the third axis to `w` (and make `rotation`), nearest to those asked for.
+    fn angles(&self, w: Vec3, rotation: Option<Mat3>, asked: &[f64]) -> [f64; 4] {
+        let Some([a, b, c]) = self.axes() else { return [0.0, 0.0, 0.0, 1.0] };
+        let beside = a.cross(b);
+        let lead = b.dot(a.cross(c)).atan2(a.dot(c));
+        let (along, up, side) = (w.dot(a), w.dot(b), w.dot(beside));
+        let sine = up.hypot(side);
+        let near = |angle: f64, asked: f64| angle - ((angle - asked) / TAU).round() * TAU;
+        let solve = |sign: f64| {
+            // Where the first axis and the third fall together only their sum is known.
+            let first =
+                if sine > 1e-9 { (sign * up).atan2(-sign * side) } else { asked[0] };
+            let second = (sign * sine).atan2(along) - lead;
+            let mut found = [near(first, asked[0]), near(second, asked[1]), 0.0, 0.0];
+            if let Some(rotation) = rotation {
+                let swung = Mat3::rotation_about(a, first.sin_cos())
+                    * Mat3::rotation_about(b, second.sin_cos());
+                let left = swung.transpose() * rotation * b;
+                found[2] = near(c.dot(b.cross(left)).atan2(b.dot(left)), asked[2]);
+            }
+            let far: f64 = found.iter().zip(asked).map(|(x, y)| (x - y) * (x - y)).sum();
+            (far, found)
+        };
+        let ((far, found), (other_far, other)) = (solve(1.0), solve(-1.0));
+        if other_far < far { other } else { found }
+    }
+
+    /// Slopes along the directions of an orientation as slopes along its four stored numbers.
+    ///
+    /// δ = 2·vec(q⁻¹·q̇)/|q|², so s·δ = 2·((w·s - s × v)·v̇ - (s·v)·ẇ)/|q|².
+    pub(crate) fn stored_slopes(&self, numbers: &[f64], s: [f64; 3]) -> [f64; 4] {
+        if !matches!(self.of, Swinging::Orientation(_)) {
+            return [s[0], s[1], s[2], 0.0];
+        }
+        let q: [f64; 4] = std::array::from_fn(|i| numbers[i]);
+        let (v, s) = (Vec3::new(q[0], q[1], q[2]), Vec3::from(s));
+        let square = q.iter().map(|x| x * x).sum::<f64>().max(1e-300);
+        let along = (s * q[3] - s.cross(v)) * (2.0 / square);
+        [along.x, along.y, along.z, -2.0 * s.dot(v) / square]
+    }
+
+    /// The rows of open mode, [`JointCone::rows`] of them, with their slopes.
+    pub(crate) fn open_rows(&self, numbers: &[f64]) -> [ConeRow; 3] {
+        let (rotation, moving) = self.rotation(numbers);
+        self.cone.rows(rotation).map(|(value, along)| (value, moving.map(|axis| along.dot(axis))))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::limit::{ConePoint, Projection};
+    use crate::position::CoordinateId;
+
+    fn cone(half: f64, twist: Option<[f64; 2]>) -> Cone {
+        let points = (0..24).map(|i| {
+            let (s, c) = (TAU * f64::from(i) / 24.0).sin_cos();
+            let direction = Vec3::new(half.sin() * c, -half.cos(), half.sin() * s);
+            ConePoint { direction, twist }
+        });
+        Cone::new(-Vec3::Y, twist, points.collect(), 0, Projection::Nearest).unwrap()
+    }
+
+    fn source(i: u32) -> Source {
+        Source::Coordinate(CoordinateId(i))
+    }
+
+    #[test]
+    fn legal_angles_make_the_legal_rotation_and_stay_near() {
+        let axes = [Vec3::Z, Vec3::X, Vec3::Y];
+        let of = Swinging::Angles([0, 1, 2].map(source), axes);
+        let limit = JointCone { of, cone: cone(0.7, Some([-0.5, 0.4])) };
+        for asked in [[1.2, 0.3, 0.1], [-0.4, 1.1, 0.9], [0.2, 0.1, -1.5], [2.0, -1.0, 0.0]] {
+            let found = limit.legal(&asked).expect("outside");
+            let product = Mat3::rotation_z(found[0])
+                * Mat3::rotation_x(found[1])
+                * Mat3::rotation_y(found[2]);
+            let turned = Mat3::rotation_z(asked[0])
+                * Mat3::rotation_x(asked[1])
+                * Mat3::rotation_y(asked[2]);
+            let expected = limit.cone.legal(turned).rotation;
+            for i in 0..9 {
+                let off = product.at(i / 3, i % 3) - expected.at(i / 3, i % 3);
+                assert!(off.abs() < 1e-12, "{asked:?} {off}");
+            }
+            for (_, row) in limit.open_rows(&found).iter().enumerate() {
+                assert!(row.0 > -1e-9, "{row:?}");
+            }
+        }
+        assert_eq!(limit.legal(&[0.3, 0.2, 0.1]), None);
+        // A plain hinge motion beyond the cone stops at its rim: 0.7 rad less the sagitta of a 24-gon.
+        let [first, second, ..] = limit.legal(&[1.5, 0.0, 0.0]).unwrap();
+        assert!((0.69..=0.7).contains(&first) && second.abs() < 1e-9, "{first} {second}");
+    }
+
+    #[test]
+    fn two_angles_swing_without_a_twist() {
+        let of = Swinging::Directions([0, 1].map(source), [Vec3::Z, Vec3::X]);
+        let limit = JointCone { of, cone: cone(0.5, None) };
+        assert_eq!(limit.rows(), 1);
+        let found = limit.legal(&[0.9, 0.6]).unwrap();
+        let bone = Mat3::rotation_z(found[0]) * Mat3::rotation_x(found[1]) * -Vec3::Y;
+        let asked = Mat3::rotation_z(0.9) * Mat3::rotation_x(0.6) * -Vec3::Y;
+        assert!((bone - limit.cone.project(asked).direction).norm() < 1e-12);
+    }
+
+    #[test]
+    fn rows_change_as_their_slopes_say() {
+        let axes = [Vec3::X, Vec3::Z, Vec3::Y];
+        let three = Swinging::Angles([0, 1, 2].map(source), axes);
+        let limit = JointCone { of: three, cone: cone(0.9, Some([-0.5, 0.4])) };
+        let at = [0.31, -0.42, 0.23];
+        let h = 1e-6;
+        for k in 0..3 {
+            let moved = |step: f64| {
+                let mut angles = at;
+                angles[k] += step;
+                limit.open_rows(&angles).map(|(value, _)| value)
+            };
+            let (ahead, behind) = (moved(h), moved(-h));
+            for row in 0..3 {
+                let slope = (ahead[row] - behind[row]) / (2.0 * h);
+                let exact = limit.open_rows(&at)[row].1[k];
+                assert!((slope - exact).abs() < 1e-7, "{row} {k}: {slope} {exact}");
+            }
+        }
+    }
+}

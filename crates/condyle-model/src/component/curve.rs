@@ -1,0 +1,148 @@
+//! Motion along a curve in space: T = \[R(u) | c(u)\] (Rotenberg, *Skeletons*, section 2.2.4).
+//!
+//! c is a cubic spline of the parameter u, which may be any number: an angle, a distance, a share.
+//! With a [`Heading`] the segment also turns with the curve, as a car does on its track: its own
+//! `forward` axis follows the tangent t = c′/|c′|, and its `up` axis stays as near as it can to where
+//! it is at rest, in the plane of the tangent and that direction:
+//!
+//! ```text
+//! n = (up - (up·t)·t) / |…|,   R = [t, n, t × n]·[f, u, f × u]ᵀ
+//! ```
+//!
+//! with u the part of `up` across f, made a unit. Kinks: none for the position; the heading has a kink
+//! of its slope at the knots, and is undefined where the curve stops (c′ = 0) or runs along `up`: there
+//! the last rotation that can be told is not known to a function of u, and R is built on any direction
+//! across. `condyle check` finds such curves. Generator: by dual numbers.
+
+use super::{Law, Source};
+use condyle_math::function::SimmSpline;
+use condyle_math::{Affine, Mat3, Scalar, Vec3};
+
+/// A segment on a track.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// Where on the curve it is.
+    pub parameter: Source,
+    /// The curve: splines of the parameter for x, y and z, in metres.
+    pub path: Box<[SimmSpline; 3]>,
+    /// How it turns with the curve, if it does.
+    pub heading: Option<Heading>,
+}
+
+/// How a segment turns with its curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Heading {
+    /// The segment's axis that follows the tangent.
+    pub forward: Vec3,
+    /// The axis that stays up: the same direction in the segment at rest and in the parent.
+    pub up: Vec3,
+}
+
+impl Curve {
+    /// How near the curve comes to where a heading is undefined: the least |c′ × up|/(|c′||up|) over
+    /// a fine walk along its knots, 0 where it stops.
+    pub fn least_heading(&self) -> f64 {
+        let Some(heading) = self.heading else { return 1.0 };
+        let mut knots: Vec<f64> =
+            self.path.iter().flat_map(|s| s.knots().map(|(u, _)| u)).collect();
+        knots.sort_by(f64::total_cmp);
+        let up = heading.up.normalized();
+        let mut least = 1.0f64;
+        for piece in knots.windows(2) {
+            for i in 0..=32 {
+                let u = piece[0] + (piece[1] - piece[0]) * f64::from(i) / 32.0;
+                let [x, y, z] = [0, 1, 2].map(|k: usize| self.path[k].derivatives(u)[1]);
+                let tangent = Vec3::new(x, y, z);
+                let length = tangent.norm();
+                let sine =
+                    if length > 1e-9 { (tangent * (1.0 / length)).cross(up).norm() } else { 0.0 };
+                least = least.min(sine);
+            }
+        }
+        least
+    }
+}
+
+/// `v` at length 1, or `instead` where it has none to speak of.
+fn unit<S: Scalar>(v: Vec3<S>, instead: Vec3) -> Vec3<S> {
+    let square = v.dot(v);
+    let (least, one) = (S::from_f64(1e-24), S::one());
+    let safe = square.select_less(least, one, square).sqrt();
+    let pick = |v: S, other: f64| square.select_less(least, S::from_f64(other), v / safe);
+    Vec3::new(pick(v.x, instead.x), pick(v.y, instead.y), pick(v.z, instead.z))
+}
+
+/// A direction across another.
+fn across(v: Vec3) -> Vec3 {
+    let pick = if v.x.abs() < 0.6 * v.norm() { Vec3::X } else { Vec3::Y };
+    v.cross(pick).normalized()
+}
+
+impl Law for Curve {
+    fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
+        let at = |k: usize, order: usize| {
+            inputs[0].chain(|u| {
+                let all = self.path[k].derivatives(u);
+                (all[order], all[order + 1])
+            })
+        };
+        let place = Vec3::new(at(0, 0), at(1, 0), at(2, 0));
+        let Some(Heading { forward, up }) = self.heading else {
+            return Affine::from_translation(place);
+        };
+        let forward = forward.normalized();
+        let own_up = unit(up - forward * up.dot(forward), across(forward));
+        let rest = Mat3::from_columns(forward, own_up, forward.cross(own_up));
+        let tangent = unit(Vec3::new(at(0, 1), at(1, 1), at(2, 1)), forward);
+        let up: Vec3<S> = up.normalized().cast();
+        let steep = Vec3::new(tangent.x.value(), tangent.y.value(), tangent.z.value());
+        let normal = unit(up - tangent * up.dot(tangent), across(steep));
+        let frame = Mat3::from_columns(tangent, normal, tangent.cross(normal));
+        Affine::new(frame * rest.transpose().cast(), place)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::position::CoordinateId;
+
+    /// A quarter of a circle of radius 2 in the ground plane, finely knotted.
+    fn track(heading: Option<Heading>) -> Curve {
+        let u: Vec<f64> = (0..=200).map(|i| f64::from(i) * 0.01).collect();
+        let spline = |f: &dyn Fn(f64) -> f64| {
+            SimmSpline::new(u.clone(), u.iter().map(|&u| f(u)).collect()).unwrap()
+        };
+        let path = [
+            spline(&|u| 2.0 * u.sin()),
+            spline(&|_| 0.0),
+            spline(&|u| 2.0 * (u.cos() - 1.0)),
+        ];
+        let parameter = Source::Coordinate(CoordinateId(0));
+        Curve { parameter, path: Box::new(path), heading }
+    }
+
+    #[test]
+    fn a_car_turns_with_its_track() {
+        let heading = Heading { forward: Vec3::X, up: Vec3::Y };
+        let curve = track(Some(heading));
+        for u in [0.3, 0.9, 1.4] {
+            // On a circle about y the tangent (cos u, 0, -sin u) is x turned by u about y.
+            let found = curve.transform(&[u]);
+            let expected = Mat3::rotation_y(u);
+            for i in 0..9 {
+                let (row, column) = (i / 3, i % 3);
+                let off = found.linear.at(row, column) - expected.at(row, column);
+                assert!(off.abs() < 1e-6, "{u} {off}");
+            }
+            let place = Vec3::new(2.0 * u.sin(), 0.0, 2.0 * (u.cos() - 1.0));
+            assert!((found.translation - place).norm() < 1e-8);
+        }
+        assert_eq!(track(None).transform(&[0.7]).linear, Mat3::IDENTITY);
+        assert!((curve.least_heading() - 1.0).abs() < 1e-12);
+        // Up along the track: no heading can be told at its start, and nothing breaks.
+        let steep = track(Some(Heading { forward: Vec3::X, up: Vec3::X }));
+        assert!(steep.least_heading() < 1e-6);
+        assert!(steep.transform(&[0.0]).linear.determinant() > 0.999);
+    }
+}

@@ -1,0 +1,182 @@
+//! A motion that a user of the library wrote: T = law(x₁, …, x₄).
+//!
+//! The law is one generic function, so posing, derivatives and tracking all run it; its name and its
+//! parameters are what files keep.
+
+use super::{Law, Source};
+use condyle_math::{Affine, Dual, Mat3, Scalar, Vec3};
+use std::any::TypeId;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::Arc;
+
+use super::MOST_LAW_INPUTS;
+
+/// A number that knows its slope along every input of a law.
+pub type LawDual = Dual<MOST_LAW_INPUTS>;
+
+/// The parameters of a [`Custom`] component: lists of numbers by name, in metres and radians.
+pub type Parameters = BTreeMap<String, Vec<f64>>;
+
+/// A [`Law`] behind a pointer: what a program stores of a user's motion.
+///
+/// Every `Law` is one; nobody needs to implement this.
+pub trait ErasedLaw: fmt::Debug + Send + Sync {
+    /// The transform.
+    fn at(&self, inputs: &[f64]) -> Affine;
+    /// The transform with its derivatives.
+    fn dual_at(&self, inputs: &[LawDual]) -> Affine<LawDual>;
+    /// Whether it neither stretches nor shears.
+    fn is_rigid(&self) -> bool;
+}
+
+impl<L: Law + fmt::Debug + Send + Sync> ErasedLaw for L {
+    fn at(&self, inputs: &[f64]) -> Affine {
+        self.transform(inputs)
+    }
+
+    fn dual_at(&self, inputs: &[LawDual]) -> Affine<LawDual> {
+        self.transform(inputs)
+    }
+
+    fn is_rigid(&self) -> bool {
+        Law::is_rigid(self)
+    }
+}
+
+/// A motion by a user's law.
+#[derive(Clone, Debug)]
+pub struct Custom {
+    /// The name under which the law is registered.
+    pub law: String,
+    /// What the law was made with.
+    pub parameters: Parameters,
+    /// Where its inputs come from, in its order; at most [`MOST_LAW_INPUTS`].
+    pub inputs: Vec<Source>,
+    motion: Arc<dyn ErasedLaw>,
+}
+
+impl PartialEq for Custom {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.law, &self.parameters, &self.inputs)
+            == (&other.law, &other.parameters, &other.inputs)
+    }
+}
+
+impl Law for Custom {
+    fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
+        if TypeId::of::<S>() == TypeId::of::<f64>() {
+            let mut plain = [0.0; MOST_LAW_INPUTS];
+            plain.iter_mut().zip(inputs).for_each(|(p, x)| *p = x.value());
+            return self.motion.at(&plain[..inputs.len().min(MOST_LAW_INPUTS)]).cast();
+        }
+        // First order in the inputs: exact for plain numbers and for dual ones.
+        let mut duals = [LawDual::constant(0.0); MOST_LAW_INPUTS];
+        let n = inputs.len().min(MOST_LAW_INPUTS);
+        for (i, input) in inputs[..n].iter().enumerate() {
+            duals[i] = LawDual::variable(input.value(), i);
+        }
+        let moved = self.motion.dual_at(&duals[..n]);
+        let lift = |d: LawDual| {
+            let slopes = inputs[..n].iter().zip(d.partials);
+            slopes.fold(S::from_f64(d.value), |sum, (x, p)| sum + x.chain(|_| (0.0, p)))
+        };
+        let vector = |v: Vec3<LawDual>| Vec3::new(lift(v.x), lift(v.y), lift(v.z));
+        let m = moved.linear;
+        let linear = Mat3::from_columns(vector(m.x), vector(m.y), vector(m.z));
+        Affine::new(linear, vector(moved.translation))
+    }
+
+    fn is_rigid(&self) -> bool {
+        self.motion.is_rigid()
+    }
+}
+
+type Maker = dyn Fn(&Parameters) -> Result<Arc<dyn ErasedLaw>, String> + Send + Sync;
+
+/// The laws that a program knows by name, so that files can speak of them.
+///
+/// ```
+/// use condyle_math::{Affine, Mat3, Scalar, Vec3};
+/// use condyle_model::component::{Law, Registry};
+///
+/// /// A cam: it turns about z and lifts as it turns.
+/// #[derive(Debug)]
+/// struct Cam { lift: f64 }
+/// impl Law for Cam {
+///     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
+///         let (s, c) = inputs[0].sin_cos();
+///         let lift = (S::one() - c) * S::from_f64(self.lift);
+///         let turn = Mat3::rotation_about(Vec3::Z.cast(), (s, c));
+///         Affine::new(turn, Vec3::new(S::zero(), lift, S::zero()))
+///     }
+/// }
+///
+/// let mut registry = Registry::default();
+/// registry.register("cam", &["angle"], |parameters| {
+///     let lift = parameters.get("lift").and_then(|v| v.first());
+///     Ok(Cam { lift: *lift.ok_or("it needs a `lift` in metres")? })
+/// });
+/// let parameters = [("lift".to_owned(), vec![0.02])].into();
+/// let inputs = vec![]; // where the angle comes from, in a real model
+/// let cam = registry.make("cam", parameters, inputs).unwrap();
+/// assert_eq!(cam.transform(&[std::f64::consts::PI]).translation.y, 0.04);
+/// ```
+#[derive(Clone, Default)]
+pub struct Registry {
+    laws: BTreeMap<String, (Vec<String>, Arc<Maker>)>,
+}
+
+impl fmt::Debug for Registry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(self.names()).finish()
+    }
+}
+
+impl Registry {
+    /// Adds a law under a name, with the names of its inputs and how it is made of its parameters.
+    ///
+    /// `make` says in a sentence what is wrong with parameters that it cannot use. A law registered
+    /// before under the same name is replaced.
+    pub fn register<L: ErasedLaw + 'static>(
+        &mut self,
+        name: &str,
+        inputs: &[&str],
+        make: impl Fn(&Parameters) -> Result<L, String> + Send + Sync + 'static,
+    ) {
+        let make = move |p: &Parameters| make(p).map(|law| Arc::new(law) as Arc<dyn ErasedLaw>);
+        let inputs = inputs.iter().map(|&input| input.to_owned()).collect();
+        self.laws.insert(name.to_owned(), (inputs, Arc::new(make)));
+    }
+
+    /// The names of all laws.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.laws.keys().map(String::as_str)
+    }
+
+    /// The names of a law's inputs.
+    pub fn inputs(&self, name: &str) -> Option<&[String]> {
+        self.laws.get(name).map(|(inputs, _)| inputs.as_slice())
+    }
+
+    /// A component of a registered law.
+    ///
+    /// # Errors
+    /// A sentence: no such law, or what the law says of its parameters.
+    pub fn make(
+        &self,
+        name: &str,
+        parameters: Parameters,
+        inputs: Vec<Source>,
+    ) -> Result<Custom, String> {
+        let Some((_, make)) = self.laws.get(name) else {
+            let known: Vec<&str> = self.names().collect();
+            return Err(match known.is_empty() {
+                true => format!("no law `{name}` is registered: none is, in this program"),
+                false => format!("no law `{name}` is registered; there are: {}", known.join(", ")),
+            });
+        };
+        let motion = make(&parameters)?;
+        Ok(Custom { law: name.to_owned(), parameters, inputs, motion })
+    }
+}

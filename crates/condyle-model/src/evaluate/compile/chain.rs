@@ -1,0 +1,247 @@
+//! Chains: the motions of segments, laid end to end.
+
+use super::super::instruction::{AnyLaw, ContactCall, Instruction, LawCall, NO_BASE, Step};
+use super::{Compiler, Scalar};
+use crate::component::{Compensate, Component, Contact, Source, shear};
+use crate::model::{ComponentId, SegmentId};
+use condyle_math::{Affine, Mat3, Vec3};
+
+impl Compiler<'_> {
+    /// The rotations from the topmost compensated ancestor's parent to the segment's: as they are,
+    /// and with what is compensated taken away.
+    pub(super) fn paths(&mut self, compensate: &Compensate) -> (u32, u32) {
+        let path = self.model.compensated_path(compensate);
+        let mut registers = [0; 2];
+        for (register, take) in registers.iter_mut().zip([0.0, compensate.weight]) {
+            let mut steps = vec![];
+            for &id in &path {
+                let segment = self.model.segment(id);
+                self.fixed(Affine::from_rotation(segment.joint_in_parent.linear), &mut steps);
+                if let Some(Source::Output(motion, _)) = segment.motion
+                    && let Some(of) = self.shared[motion.index()]
+                {
+                    let named = compensate.ancestors.contains(&id);
+                    let exponent = if named { 1.0 - take } else { 1.0 };
+                    if exponent != 0.0 {
+                        steps.push(Step::Power { of, exponent });
+                    }
+                }
+                let back = segment.joint_in_segment.linear.transpose();
+                self.fixed(Affine::from_rotation(back), &mut steps);
+            }
+            *register = self.new_transform();
+            self.chain(NO_BASE, steps, *register);
+        }
+        (registers[0], registers[1])
+    }
+
+    /// The turns that put a bone on its ellipsoid.
+    pub(super) fn contact(&mut self, contact: &Contact) -> u32 {
+        let mut steps = vec![];
+        self.fixed(contact.law.ellipsoid_in_surface().rigid_inverse(), &mut steps);
+        for id in self.model.path_between(contact.surface, contact.segment) {
+            let segment = self.model.segment(id);
+            self.fixed(segment.joint_in_parent, &mut steps);
+            let motion = if id == contact.segment { contact.before } else { segment.motion };
+            if let Some(Source::Output(motion, _)) = motion
+                && let Some(register) = self.shared[motion.index()]
+            {
+                steps.push(Step::Transform(register));
+            }
+            if id != contact.segment {
+                self.fixed(segment.joint_in_segment.rigid_inverse(), &mut steps);
+            }
+        }
+        let frame = self.new_transform();
+        self.chain(NO_BASE, steps, frame);
+        let drivers = contact.drivers.iter().map(|&driver| {
+            let scalar = self.scalar(driver);
+            self.register(scalar)
+        });
+        let drivers = drivers.collect();
+        let output = self.new_transform();
+        let report = self.program.code.scalars as u32;
+        self.program.code.scalars += 4;
+        let call = ContactCall { law: contact.law.clone(), frame, drivers, output, report };
+        self.program.code.contacts.push(call);
+        let contact = self.program.code.contacts.len() as u32 - 1;
+        self.program.code.instructions.push(Instruction::Contact { contact });
+        output
+    }
+
+    pub(super) fn new_transform(&mut self) -> u32 {
+        self.program.code.transforms += 1;
+        self.program.code.transforms as u32 - 1
+    }
+
+    /// Lays the steps of a transform component end to end; products are opened without recursion.
+    pub(super) fn append(&mut self, id: ComponentId, steps: &mut Vec<Step>) {
+        let mut stack = vec![Source::Output(id, 0)];
+        let mut at_root = true;
+        while let Some(source) = stack.pop() {
+            let Source::Output(id, _) = source else { continue };
+            if let Some(register) = self.shared[id.index()]
+                && !at_root
+            {
+                steps.push(Step::Transform(register));
+                continue;
+            }
+            at_root = false;
+            match &self.model.components[id.index()].component {
+                Component::Product(product) => stack.extend(product.factors.iter().rev()),
+                Component::Place(place) => self.fixed(place.child_in_parent, steps),
+                Component::Rotate(rotate) => match self.scalar(rotate.angle) {
+                    Scalar::Constant(angle) => {
+                        let turn = Mat3::rotation_about(rotate.axis, angle.sin_cos());
+                        self.fixed(Affine::from_rotation(turn), steps);
+                    }
+                    Scalar::Register(angle) => steps.push(turn(rotate.axis, angle)),
+                },
+                Component::Translate(translate) => match self.scalar(translate.distance) {
+                    Scalar::Constant(distance) => {
+                        self.fixed(Affine::from_translation(translate.axis * distance), steps);
+                    }
+                    Scalar::Register(distance) => {
+                        steps.push(Step::Slide { axis: translate.axis, distance });
+                    }
+                },
+                Component::Ball(ball) => {
+                    let register = self.scalar(ball.orientation);
+                    let register = self.register(register);
+                    steps.push(Step::Ball(register));
+                }
+                Component::Pivot(law) => {
+                    self.law(AnyLaw::Pivot(law.clone()), &[law.angle], steps);
+                }
+                Component::Ellipsoid(law) => {
+                    self.law(AnyLaw::Ellipsoid(law.clone()), &law.angles, steps);
+                }
+                Component::ConstantCurvature(law) => {
+                    self.law(AnyLaw::ConstantCurvature(law.clone()), &law.angles, steps);
+                }
+                Component::Scale(scale) => match self.scalar(scale.factor) {
+                    Scalar::Constant(factor) => {
+                        let linear = scale.along.matrix(factor);
+                        self.fixed(Affine::new(linear, Vec3::ZERO), steps);
+                    }
+                    Scalar::Register(factor) => {
+                        self.program.code.scales.push(scale.along);
+                        let along = self.program.code.scales.len() as u32 - 1;
+                        steps.push(Step::Stretch { along, factor });
+                    }
+                },
+                Component::Shear(shear) => match self.scalar(shear.amount) {
+                    Scalar::Constant(amount) => {
+                        let linear = shear::matrix(shear.along, shear.across, amount);
+                        self.fixed(Affine::new(linear, Vec3::ZERO), steps);
+                    }
+                    Scalar::Register(amount) => {
+                        self.program.code.shears.push([shear.along, shear.across]);
+                        let directions = self.program.code.shears.len() as u32 - 1;
+                        steps.push(Step::Shear { directions, amount });
+                    }
+                },
+                Component::Curve(law) => {
+                    self.law(AnyLaw::Curve(law.clone()), &[law.parameter], steps);
+                }
+                Component::Custom(law) => {
+                    self.law(AnyLaw::Custom(law.clone()), &law.inputs, steps);
+                }
+                Component::Compensate(compensate) => {
+                    let Some((is, should)) = self.compensations[id.index()] else { continue };
+                    let joint = self.model.segment(compensate.segment).joint_in_parent.linear;
+                    self.fixed(Affine::from_rotation(joint.transpose()), steps);
+                    steps.push(Step::Power { of: is, exponent: -1.0 });
+                    steps.push(Step::Power { of: should, exponent: 1.0 });
+                    self.fixed(Affine::from_rotation(joint), steps);
+                }
+                Component::Contact(_) => {
+                    let turns = self.contacts[id.index()].map(Step::Transform);
+                    steps.extend(turns);
+                }
+                Component::Map(_)
+                | Component::Combine(_)
+                | Component::Depend(_)
+                | Component::Cone(_) => {}
+            }
+        }
+    }
+
+    pub(super) fn law(&mut self, law: AnyLaw, inputs: &[Source], steps: &mut Vec<Step>) {
+        let inputs = inputs
+            .iter()
+            .map(|&source| {
+                let scalar = self.scalar(source);
+                self.register(scalar)
+            })
+            .collect();
+        self.program.code.laws.push(LawCall { law, inputs });
+        steps.push(Step::Law(self.program.code.laws.len() as u32 - 1));
+    }
+
+    /// Appends a fixed transform, merged with a fixed one before it and dropped if it is nothing.
+    pub(super) fn fixed(&mut self, transform: Affine, steps: &mut Vec<Step>) {
+        let before = match steps.last() {
+            Some(Step::Fixed(index)) => Some(self.program.code.fixed[*index as usize]),
+            Some(Step::Shift(offset)) => Some(Affine::from_translation(*offset)),
+            _ => None,
+        };
+        if before.is_some() {
+            steps.pop();
+        }
+        let whole = before.map_or(transform, |b| b * transform);
+        if whole == Affine::IDENTITY {
+        } else if whole.linear == Mat3::IDENTITY {
+            steps.push(Step::Shift(whole.translation));
+        } else {
+            self.program.code.fixed.push(whole);
+            steps.push(Step::Fixed(self.program.code.fixed.len() as u32 - 1));
+        }
+    }
+
+    pub(super) fn segment(&mut self, id: SegmentId) {
+        let segment = self.model.segment(id);
+        let base = segment.parent.map_or(self.program.code.base, |p| p.0);
+        let mut steps = vec![];
+        self.fixed(segment.joint_in_parent, &mut steps);
+        if let Some(Source::Output(component, _)) = segment.motion {
+            match self.shared[component.index()] {
+                Some(register) => steps.push(Step::Transform(register)),
+                None => self.append(component, &mut steps),
+            }
+        }
+        self.fixed(segment.joint_in_segment.rigid_inverse(), &mut steps);
+        self.chain(base, steps, id.0);
+    }
+
+    pub(super) fn chain(&mut self, base: u32, steps: Vec<Step>, output: u32) {
+        let instruction = match steps[..] {
+            [Step::Ball(orientation)] if base != NO_BASE => {
+                Instruction::BallAt { base, shift: Vec3::ZERO, orientation, output }
+            }
+            [Step::Shift(shift), Step::Ball(orientation)] if base != NO_BASE => {
+                Instruction::BallAt { base, shift, orientation, output }
+            }
+            _ => {
+                let first = self.program.code.steps.len() as u32;
+                self.program.code.steps.extend(steps);
+                let end = self.program.code.steps.len() as u32;
+                Instruction::Chain { base, first, end, output }
+            }
+        };
+        self.program.code.instructions.push(instruction);
+    }
+}
+
+/// The step that turns about an axis of length 1.
+fn turn(axis: Vec3, angle: u32) -> Step {
+    if axis == Vec3::X {
+        Step::TurnX(angle)
+    } else if axis == Vec3::Y {
+        Step::TurnY(angle)
+    } else if axis == Vec3::Z {
+        Step::TurnZ(angle)
+    } else {
+        Step::Turn { axis, angle }
+    }
+}

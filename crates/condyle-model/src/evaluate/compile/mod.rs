@@ -1,0 +1,204 @@
+//! From a checked model to its program.
+
+mod chain;
+mod scalar;
+
+use super::derivative_plan::{DerivativePlan, plan};
+use super::instruction::Code;
+use super::program::Program;
+use crate::component::{Component, Source, Swinging};
+use crate::model::{ComponentId, CoordinateId, CoordinateKind, Model, Node, dependency_order};
+use std::collections::HashMap;
+
+/// What stands for a source while a program is laid out.
+#[derive(Clone, Copy, Debug)]
+enum Scalar {
+    Constant(f64),
+    Register(u32),
+}
+
+struct Compiler<'m> {
+    model: &'m Model,
+    program: Program,
+    /// What each coordinate's effective value is (its first register, for an orientation).
+    coordinates: Vec<Scalar>,
+    /// What each output of each scalar component is.
+    outputs: Vec<Vec<Scalar>>,
+    /// The register of each transform component that several things read.
+    shared: Vec<Option<u32>>,
+    /// For each compensation the path as it is and as it should be.
+    compensations: Vec<Option<(u32, u32)>>,
+    /// For each contact the register of its turns.
+    contacts: Vec<Option<u32>>,
+    /// How many things read each transform component.
+    readers: Vec<usize>,
+    needed: Vec<bool>,
+    /// Outputs of limit components that are the effective value of a coordinate.
+    effective: HashMap<Source, CoordinateId>,
+}
+
+impl Program {
+    /// Flattens a model. Models are checked when they are built, so this cannot fail.
+    pub fn compile(model: &Model) -> Self {
+        compile(model)
+    }
+}
+
+/// Flattens a model.
+fn compile(model: &Model) -> Program {
+    // A built model has no circle; an empty order for a wrong one would only pose nothing.
+    let order = dependency_order(model).unwrap_or_default();
+    let components = model.components.len();
+    let mut compiler = Compiler {
+        model,
+        program: Program {
+            stored: model.stored_len(),
+            segments: model.segments.len(),
+            constants: vec![],
+            asked: vec![],
+            limits: vec![],
+            code: Code {
+                scalars: model.stored_len(),
+                transforms: model.segments.len() + 1,
+                instructions: vec![],
+                steps: vec![],
+                fixed: vec![],
+                functions: vec![],
+                combines: vec![],
+                laws: vec![],
+                scales: vec![],
+                shears: vec![],
+                rows: vec![],
+                cones: vec![],
+                contacts: vec![],
+                base: model.segments.len() as u32,
+            },
+            plan: DerivativePlan::default(),
+        },
+        coordinates: model
+            .coordinate_ids()
+            .map(|id| Scalar::Register(model.stored_range(id).start as u32))
+            .collect(),
+        outputs: vec![vec![]; components],
+        shared: vec![None; components],
+        compensations: vec![None; components],
+        contacts: vec![None; components],
+        readers: vec![0; components],
+        needed: vec![false; components],
+        effective: HashMap::new(),
+    };
+    compiler.mark_needed(&order);
+    compiler.limits();
+    compiler.find_effective(&order);
+    for node in order {
+        compiler.node(node);
+    }
+    compiler.follower_rows();
+    for segment in model.parents_first() {
+        compiler.segment(segment);
+    }
+    let directions: Vec<(u32, u32)> = model
+        .coordinate_ids()
+        .filter(|&id| model.coordinate(id).follows.is_none())
+        .filter_map(|id| match compiler.coordinates[id.index()] {
+            Scalar::Register(register) => Some((register, model.tangent_range(id).start as u32)),
+            Scalar::Constant(_) => None,
+        })
+        .collect();
+    compiler.program.plan =
+        plan(&compiler.program.code, model.stored_len(), model.tangent_len(), &directions);
+    compiler.program
+}
+
+impl Compiler<'_> {
+    /// Finds what segments and coupled coordinates read, directly or not; the rest is dropped.
+    fn mark_needed(&mut self, order: &[Node]) {
+        let roots = self.model.segments.iter().filter_map(|s| s.motion);
+        let roots = roots.chain(self.model.coordinates.iter().filter_map(|c| c.follows));
+        for source in roots {
+            if let Source::Output(id, _) = source {
+                self.needed[id.index()] = true;
+                self.readers[id.index()] += 1;
+            }
+        }
+        for node in order.iter().rev() {
+            let Node::Component(id) = *node else { continue };
+            if !self.needed[id.index()] {
+                continue;
+            }
+            for source in self.model.reads(id) {
+                if let Source::Output(input, _) = source {
+                    self.needed[input.index()] = true;
+                    self.readers[input.index()] += 1;
+                }
+            }
+        }
+    }
+
+    /// Finds the coordinates that limit components hold. The limit farthest along the way from a
+    /// coordinate writes its effective value (of several as far, the last in the model); everything
+    /// that reads the coordinate itself gets what was asked for.
+    fn find_effective(&mut self, order: &[Node]) {
+        // For each output the coordinate that it holds, and how many limits lie between.
+        let mut origin: HashMap<Source, (CoordinateId, usize)> = HashMap::new();
+        let mut last: HashMap<CoordinateId, (usize, ComponentId, Source)> = HashMap::new();
+        for node in order {
+            let Node::Component(id) = *node else { continue };
+            if !self.needed[id.index()] {
+                continue;
+            }
+            let held: Vec<Source> = match &self.model.components[id.index()].component {
+                Component::Depend(c) => vec![c.passive],
+                Component::Cone(c) => match &c.of {
+                    Swinging::Angles(angles, _) => angles.to_vec(),
+                    Swinging::Directions(angles, _) => angles.to_vec(),
+                    Swinging::Orientation(source) => vec![*source],
+                },
+                _ => continue,
+            };
+            for (k, source) in held.into_iter().enumerate() {
+                let found = match source {
+                    Source::Coordinate(id) => Some((id, 0)),
+                    output => origin.get(&output).copied(),
+                };
+                let Some((coordinate, depth)) = found else { continue };
+                if self.model.coordinate(coordinate).follows.is_some() {
+                    continue;
+                }
+                let output = Source::Output(id, k as u32);
+                origin.insert(output, (coordinate, depth + 1));
+                let far = (depth + 1, id, output);
+                let best = last.entry(coordinate).or_insert(far);
+                if (far.0, far.1) >= (best.0, best.1) {
+                    *best = far;
+                }
+            }
+        }
+        for id in self.model.coordinate_ids() {
+            let Some(&(.., output)) = last.get(&id) else { continue };
+            self.effective.insert(output, id);
+            let own = self.model.stored_range(id);
+            let asked = self.program.code.scalars as u32;
+            self.program.code.scalars += own.len();
+            self.coordinates[id.index()] = Scalar::Register(asked);
+            let pairs = own.zip(asked..).map(|(own, asked)| (own as u32, asked));
+            self.program.asked.extend(pairs);
+        }
+    }
+
+    fn limits(&mut self) {
+        for id in self.model.coordinate_ids() {
+            let coordinate = self.model.coordinate(id);
+            let (lower, upper) = coordinate.range.bounds();
+            let bounded = lower > f64::NEG_INFINITY || upper < f64::INFINITY;
+            if bounded
+                && coordinate.follows.is_none()
+                && coordinate.kind != CoordinateKind::Orientation
+            {
+                let register = self.model.stored_range(id).start as u32;
+                self.program.limits.push((register, lower, upper));
+            }
+        }
+    }
+}
+

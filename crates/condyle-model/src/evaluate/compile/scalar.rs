@@ -1,0 +1,226 @@
+//! Scalar instructions: what components make of coordinates and of each other.
+
+use super::super::instruction::{CombineCall, ConeCall, Instruction, NO_BASE, NO_BOUND};
+use super::{Compiler, Scalar};
+use crate::component::{Component, Depend, JointCone, Source, Swinging};
+use crate::model::{ComponentId, Node};
+use condyle_math::function::FunctionOfSeveral;
+
+impl Compiler<'_> {
+    pub(super) fn scalar(&self, source: Source) -> Scalar {
+        match source {
+            Source::Coordinate(id) => self.coordinates[id.index()],
+            Source::Output(id, output) => self.outputs[id.index()]
+                .get(output as usize)
+                .copied()
+                .unwrap_or(Scalar::Constant(0.0)),
+        }
+    }
+
+    /// A register that holds a source, made for a constant.
+    pub(super) fn register(&mut self, scalar: Scalar) -> u32 {
+        match scalar {
+            Scalar::Register(register) => register,
+            Scalar::Constant(value) => {
+                let register = self.new_scalar();
+                self.program.constants.push((register, value));
+                register
+            }
+        }
+    }
+
+    pub(super) fn new_scalar(&mut self) -> u32 {
+        self.program.code.scalars += 1;
+        self.program.code.scalars as u32 - 1
+    }
+
+    pub(super) fn node(&mut self, node: Node) {
+        match node {
+            Node::Coordinate(id) => {
+                let Some(leader) = self.model.coordinate(id).follows else { return };
+                // The effective value must stand in the coordinate's own register, for whoever
+                // reads the pose.
+                let own = self.model.stored_range(id).start as u32;
+                match self.scalar(leader) {
+                    Scalar::Constant(value) => {
+                        self.program.constants.push((own, value));
+                        self.coordinates[id.index()] = Scalar::Constant(value);
+                    }
+                    Scalar::Register(input) => {
+                        let identity = condyle_math::function::Function::identity();
+                        self.function(identity, input, own);
+                    }
+                }
+            }
+            Node::Component(id) if self.needed[id.index()] => self.component(id),
+            Node::Component(_) => {}
+        }
+    }
+
+    pub(super) fn function(&mut self, function: condyle_math::function::Function, input: u32, output: u32) {
+        self.program.code.functions.push(function);
+        let function = self.program.code.functions.len() as u32 - 1;
+        self.program.code.instructions.push(Instruction::Function { function, input, output });
+    }
+
+    pub(super) fn component(&mut self, id: ComponentId) {
+        match &self.model.components[id.index()].component {
+            Component::Map(map) => {
+                let input = self.scalar(map.input);
+                for function in &map.functions {
+                    let value = function.as_constant();
+                    let result = match (input, value, function.as_linear()) {
+                        (_, Some(value), _) => Scalar::Constant(value),
+                        (Scalar::Constant(x), ..) => {
+                            Scalar::Constant(function.value_and_slope(x).0)
+                        }
+                        (register, _, Some((1.0, 0.0))) => register,
+                        (Scalar::Register(input), ..) => {
+                            let output = self.new_scalar();
+                            self.function(function.clone(), input, output);
+                            Scalar::Register(output)
+                        }
+                    };
+                    self.outputs[id.index()].push(result);
+                }
+            }
+            Component::Combine(combine) => {
+                let inputs: Vec<Scalar> = combine.inputs.iter().map(|&s| self.scalar(s)).collect();
+                let result = self.combine(&combine.function, &inputs);
+                self.outputs[id.index()].push(result);
+            }
+            Component::Depend(depend) => {
+                let result = self.depend(id, depend);
+                self.outputs[id.index()].push(result);
+            }
+            Component::Cone(cone) => {
+                let results = self.cone(id, cone);
+                self.outputs[id.index()].extend(results);
+            }
+            component => {
+                if let Component::Compensate(compensate) = component {
+                    self.compensations[id.index()] = Some(self.paths(compensate));
+                }
+                if let Component::Contact(contact) = component {
+                    self.contacts[id.index()] = Some(self.contact(contact));
+                }
+                if self.readers[id.index()] > 1 {
+                    let register = self.new_transform();
+                    let mut steps = vec![];
+                    self.append(id, &mut steps);
+                    self.chain(NO_BASE, steps, register);
+                    self.shared[id.index()] = Some(register);
+                }
+            }
+        }
+    }
+
+    /// A passive scalar between bounds that a driver sets: the held value, and a row for each side.
+    pub(super) fn depend(&mut self, id: ComponentId, depend: &Depend) -> Scalar {
+        let passive = self.scalar(depend.passive);
+        let passive = self.register(passive);
+        let driver = self.scalar(depend.driver);
+        let driver = self.register(driver);
+        let mut bounds = [NO_BOUND; 2];
+        let sides = [(&depend.lower, 1.0), (&depend.upper, -1.0)];
+        for (bound, (function, sign)) in bounds.iter_mut().zip(sides) {
+            let Some(function) = function else { continue };
+            *bound = self.new_scalar();
+            self.function(function.clone(), driver, *bound);
+            self.row(passive, *bound, sign);
+        }
+        let output = self.limit_output(Source::Output(id, 0));
+        let [lower, upper] = bounds;
+        self.program.code.instructions.push(Instruction::Hold { passive, lower, upper, output });
+        Scalar::Register(output)
+    }
+
+    /// The register of a limit's output: a coordinate's own, where this is its effective value.
+    fn limit_output(&mut self, output: Source) -> u32 {
+        match self.effective.get(&output) {
+            Some(&id) => self.model.stored_range(id).start as u32,
+            None => self.new_scalar(),
+        }
+    }
+
+    /// A ball joint held inside a cone, and the rows that say how far inside it is.
+    fn cone(&mut self, id: ComponentId, component: &JointCone) -> Vec<Scalar> {
+        let (mut inputs, mut outputs) = (vec![], vec![]);
+        match &component.of {
+            Swinging::Orientation(source) => {
+                let scalar = self.scalar(*source);
+                let first = self.register(scalar);
+                inputs.extend(first..first + 4);
+                let output = Source::Output(id, 0);
+                let first = match self.effective.get(&output) {
+                    Some(&id) => self.model.stored_range(id).start as u32,
+                    None => {
+                        self.program.code.scalars += 4;
+                        self.program.code.scalars as u32 - 4
+                    }
+                };
+                outputs.extend(first..first + 4);
+            }
+            Swinging::Angles(..) | Swinging::Directions(..) => {
+                for (k, (_, _, source)) in
+                    Component::Cone(component.clone()).inputs().into_iter().enumerate()
+                {
+                    let scalar = self.scalar(source);
+                    inputs.push(self.register(scalar));
+                    outputs.push(self.limit_output(Source::Output(id, k as u32)));
+                }
+            }
+        }
+        let rows: Vec<u32> = (0..component.rows()).map(|_| self.new_scalar()).collect();
+        self.program.code.rows.extend(&rows);
+        let results = outputs.iter().map(|&register| Scalar::Register(register)).collect();
+        let call = ConeCall { component: component.clone(), inputs, outputs, rows };
+        self.program.code.cones.push(call);
+        let cone = self.program.code.cones.len() as u32 - 1;
+        self.program.code.instructions.push(Instruction::Cone { cone });
+        results
+    }
+
+    /// The row `sign · (value - bound) ≥ 0`.
+    pub(super) fn row(&mut self, value: u32, bound: u32, sign: f64) {
+        let function = FunctionOfSeveral::Linear { slopes: vec![sign, -sign], intercept: 0.0 };
+        let inputs = [value, bound].map(Scalar::Register);
+        let row = self.combine(&function, &inputs);
+        let row = self.register(row);
+        self.program.code.rows.push(row);
+    }
+
+    /// Rows for the ranges of coordinates that follow others.
+    pub(super) fn follower_rows(&mut self) {
+        for id in self.model.coordinate_ids() {
+            let coordinate = self.model.coordinate(id);
+            if coordinate.follows.is_none() {
+                continue;
+            }
+            let (lower, upper) = coordinate.range.bounds();
+            let value = self.model.stored_range(id).start as u32;
+            for (bound, sign) in [(lower, 1.0), (upper, -1.0)] {
+                if bound.is_finite() {
+                    let bound = self.register(Scalar::Constant(bound));
+                    self.row(value, bound, sign);
+                }
+            }
+        }
+    }
+
+    pub(super) fn combine(&mut self, function: &FunctionOfSeveral, inputs: &[Scalar]) -> Scalar {
+        let constants: Vec<f64> = inputs
+            .iter()
+            .filter_map(|s| if let Scalar::Constant(v) = s { Some(*v) } else { None })
+            .collect();
+        if constants.len() == inputs.len() {
+            return Scalar::Constant(function.apply(&constants));
+        }
+        let inputs: Vec<u32> = inputs.iter().map(|&s| self.register(s)).collect();
+        let output = self.new_scalar();
+        self.program.code.combines.push(CombineCall { function: function.clone(), inputs });
+        let function = self.program.code.combines.len() as u32 - 1;
+        self.program.code.instructions.push(Instruction::Combine { function, output });
+        Scalar::Register(output)
+    }
+}

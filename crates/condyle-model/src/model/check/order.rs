@@ -1,0 +1,88 @@
+//! The order in which things are computed, or the circle that forbids one.
+
+use crate::component::Source;
+use crate::model::{ComponentId, CoordinateId, Model};
+
+/// One thing that is computed: a coordinate's effective value, or a component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Node {
+    Coordinate(CoordinateId),
+    Component(ComponentId),
+}
+
+/// Coordinates and components in an order in which each comes after what it reads.
+///
+/// Order and circles are settled over the whole model, per component and never per bone.
+///
+/// # Errors
+/// The names along a circle, the first one repeated at the end.
+pub(crate) fn dependency_order(model: &Model) -> Result<Vec<Node>, Vec<String>> {
+    let coordinates = model.coordinates.len();
+    let number = |source: Source| match source {
+        Source::Coordinate(id) => id.index(),
+        Source::Output(id, _) => coordinates + id.index(),
+    };
+    let reads = |node: usize| -> Vec<usize> {
+        if node < coordinates {
+            model.coordinates[node].follows.into_iter().map(number).collect()
+        } else {
+            let id = ComponentId((node - coordinates) as u32);
+            model.reads(id).into_iter().map(number).collect()
+        }
+    };
+    let name = |node: usize| {
+        if node < coordinates {
+            model.coordinate_key(CoordinateId(node as u32))
+        } else {
+            let named = &model.components[node - coordinates];
+            format!("{}.{}", model.joint_sets[named.joint_set.index()].name, named.name)
+        }
+    };
+    #[derive(Clone, Copy, PartialEq)]
+    enum Mark {
+        New,
+        Open,
+        Done,
+    }
+    let total = coordinates + model.components.len();
+    let mut marks = vec![Mark::New; total];
+    let mut order = Vec::with_capacity(total);
+    // Depth first with an explicit stack: a node, what it reads, and how much of that is done.
+    let mut stack: Vec<(usize, Vec<usize>, usize)> = Vec::new();
+    for root in 0..total {
+        if marks[root] != Mark::New {
+            continue;
+        }
+        marks[root] = Mark::Open;
+        stack.push((root, reads(root), 0));
+        while let Some((node, inputs, done)) = stack.last_mut() {
+            let Some(&next) = inputs.get(*done) else {
+                marks[*node] = Mark::Done;
+                order.push(if *node < coordinates {
+                    Node::Coordinate(CoordinateId(*node as u32))
+                } else {
+                    Node::Component(ComponentId((*node - coordinates) as u32))
+                });
+                stack.pop();
+                continue;
+            };
+            *done += 1;
+            match marks[next] {
+                Mark::Done => {}
+                Mark::New => {
+                    marks[next] = Mark::Open;
+                    stack.push((next, reads(next), 0));
+                }
+                Mark::Open => {
+                    let from = stack.iter().position(|(n, ..)| *n == next).unwrap_or(0);
+                    let mut names: Vec<String> =
+                        stack[from..].iter().map(|(n, ..)| name(*n)).collect();
+                    names.reverse();
+                    names.insert(0, name(next));
+                    return Err(names);
+                }
+            }
+        }
+    }
+    Ok(order)
+}
