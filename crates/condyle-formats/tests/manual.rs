@@ -4,12 +4,38 @@
 //! block with a file's name behind `toml` is what others include.
 
 use condyle_formats::document::{self, render};
+use condyle_math::{Affine, Mat3, Scalar, Vec3};
+use condyle_model::component::{Law, Registry};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/model-format")
+}
+
+/// The law that the manual speaks of.
+#[derive(Debug)]
+struct Cam {
+    lift: f64,
+}
+
+impl Law for Cam {
+    fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
+        let (s, c) = inputs[0].sin_cos();
+        let lift = (S::one() - c).scale(self.lift);
+        let turn = Mat3::rotation_about(Vec3::Z.cast(), (s, c));
+        Affine::new(turn, Vec3::new(S::zero(), lift, S::zero()))
+    }
+}
+
+fn laws() -> Registry {
+    let mut laws = Registry::default();
+    laws.register("cam", &["angle"], |parameters| {
+        let lift = parameters.get("lift").and_then(|list| list.first());
+        Ok(Cam { lift: *lift.ok_or("it needs a `lift` in metres")? })
+    });
+    laws
 }
 
 /// The fenced blocks of a page: what stands behind the fence, the text, the line.
@@ -33,6 +59,7 @@ fn blocks(page: &str) -> Vec<(String, String, usize)> {
 #[test]
 fn every_document_of_the_manual_is_read() {
     let (mut good, mut bad) = (0, 0);
+    let laws = laws();
     for entry in std::fs::read_dir(folder()).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_none_or(|e| e != "md") {
@@ -52,7 +79,7 @@ fn every_document_of_the_manual_is_read() {
                 let text = files.get(name).ok_or("it is not there")?;
                 Ok((*text).to_owned())
             };
-            let read = document::read(text, &mut include);
+            let read = document::read_with(text, &mut include, &laws);
             let expected = blocks.get(index + 1).filter(|(info, ..)| info == "error:");
             match (read, expected) {
                 (Ok(read), None) => {
@@ -72,6 +99,40 @@ fn every_document_of_the_manual_is_read() {
         }
     }
     assert!(good > 5 && bad > 4, "{good} documents and {bad} errors");
+}
+
+/// Each component has a section that gives its formula, units and kinks and uses it in a document.
+#[test]
+fn every_component_has_a_section() {
+    let mut sections: HashMap<String, String> = HashMap::new();
+    for entry in std::fs::read_dir(folder()).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if !name.starts_with("component-") {
+            continue;
+        }
+        let page = std::fs::read_to_string(&path).unwrap();
+        for section in page.split("\n## ").skip(1) {
+            let (title, text) = section.split_once('\n').unwrap();
+            sections.insert(title.trim_matches('`').to_owned(), text.to_owned());
+        }
+    }
+    let index = std::fs::read_to_string(folder().join("components.md")).unwrap();
+    for (table, keys) in document::keys() {
+        let Some(kind) = table.strip_prefix("component.") else { continue };
+        let text = sections.remove(kind).unwrap_or_else(|| panic!("no section on {kind}"));
+        assert!(index.contains(&format!("#{kind})")), "components.md does not link {kind}");
+        for part in ["```text\n", "- **Units:**", "- **Kinks:**", "- **Keys:**"] {
+            assert!(text.contains(part), "{kind} lacks {part}");
+        }
+        for key in keys {
+            assert!(text.contains(&format!("`{key}`")), "{kind} does not speak of `{key}`");
+        }
+        let documents = blocks(&text).into_iter().filter(|(info, ..)| info == "toml");
+        let uses = documents.filter(|(_, text, _)| text.contains(&format!(".{kind}]")));
+        assert!(uses.count() > 0, "{kind} is not shown");
+    }
+    assert!(sections.is_empty(), "sections on nothing: {:?}", sections.keys());
 }
 
 #[test]

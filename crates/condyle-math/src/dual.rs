@@ -142,7 +142,7 @@ impl<const N: usize> Scalar for Dual<N> {
 
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        let (s, c) = self.value.sin_cos();
+        let (s, c) = Scalar::sin_cos(self.value);
         (self.map(s, c), self.map(c, -s))
     }
 

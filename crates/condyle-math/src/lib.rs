@@ -31,6 +31,7 @@ pub mod function;
 mod mat3;
 mod quat;
 mod scalar;
+mod sine;
 mod swing_twist;
 mod twist;
 mod vec3;

@@ -91,7 +91,7 @@ impl Scalar for f64 {
 
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        f64::sin_cos(self)
+        crate::sine::sin_cos(self)
     }
 
     #[inline(always)]

@@ -265,6 +265,6 @@ fn amount(kind: CoordinateKind, value: f64) -> String {
             format!("{:.2}°", value.to_degrees())
         }
         CoordinateKind::Translation => format!("{:.2} mm", 1e3 * value),
-        CoordinateKind::Other => format!("{value:.4}"),
+        CoordinateKind::Scale | CoordinateKind::Other => format!("{value:.4}"),
     }
 }

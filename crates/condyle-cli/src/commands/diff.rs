@@ -201,7 +201,7 @@ fn by_model(model: &Model, sides: &[Side<'_>; 2]) -> Pairing {
                     }
                     CoordinateKind::Translation => ("m", [1.0; 2]),
                     CoordinateKind::Orientation => ("deg", [1.0; 2]),
-                    CoordinateKind::Other => ("", [1.0; 2]),
+                    CoordinateKind::Scale | CoordinateKind::Other => ("", [1.0; 2]),
                 };
                 pairing.shared.push(Shared { name, unit, columns: [a, b], factors });
             }

@@ -1,13 +1,11 @@
 //! A model as it is written: numbers read, names not yet looked up.
 
+use super::law::Law;
 use super::source::{Name, Spot};
-use condyle_math::function::{Function, FunctionOfSeveral};
+use condyle_math::function::Function;
 use condyle_math::{Affine, Vec3};
-use condyle_model::component::{
-    Ball, Centre, Combine, Compensate, Component, ConstantCurvature, Depend, Ellipsoid, Map, Pivot,
-    Place, PortType, Product, Rotate, Translate,
-};
-use condyle_model::{CoordinateKind, Range, SegmentId, Source, UpAxis};
+use condyle_model::{CoordinateKind, Range, UpAxis};
+use std::collections::HashSet;
 
 #[derive(Default)]
 pub(super) struct Draft {
@@ -20,6 +18,8 @@ pub(super) struct Draft {
     pub(super) outputs: Vec<OutputDraft>,
     pub(super) markers: Vec<MarkerDraft>,
     pub(super) closures: Vec<ClosureDraft>,
+    /// Components that could not be read, by joint set and name; joints with no name behind.
+    pub(super) broken: HashSet<(String, String)>,
 }
 
 #[derive(Clone)]
@@ -48,84 +48,6 @@ pub(super) struct ComponentDraft {
     pub(super) name: Name,
     pub(super) law: Law,
     pub(super) ports: Vec<Name>,
-}
-
-/// A component without its inputs.
-#[derive(Clone)]
-pub(super) enum Law {
-    Map(Vec<Function>),
-    Combine(FunctionOfSeveral),
-    Depend { lower: Option<Function>, upper: Option<Function> },
-    Rotate(Vec3),
-    Pivot(Vec3, Centre),
-    Translate(Vec3),
-    Ball,
-    Place(Affine),
-    Ellipsoid(Vec3),
-    ConstantCurvature { neutral: [f64; 3], length: f64 },
-    Compensate { segment: Name, ancestors: Vec<Name>, weight: f64 },
-    Product,
-}
-
-impl Law {
-    pub(super) fn inputs(&self) -> PortType {
-        match self {
-            Self::Ball => PortType::Orientation,
-            Self::Product => PortType::Transform,
-            _ => PortType::Scalar,
-        }
-    }
-
-    pub(super) fn outputs(&self) -> (PortType, usize) {
-        match self {
-            Self::Map(functions) => (PortType::Scalar, functions.len()),
-            Self::Combine(_) | Self::Depend { .. } => (PortType::Scalar, 1),
-            _ => (PortType::Transform, 1),
-        }
-    }
-
-    /// The component; a sentence where its parameters make none.
-    pub(super) fn build(
-        self,
-        sources: Vec<Source>,
-        segment: &mut dyn FnMut(&Name) -> Option<SegmentId>,
-    ) -> Result<Component, String> {
-        Ok(match (self, &sources[..]) {
-            (Self::Map(functions), &[input]) => Component::Map(Map { input, functions }),
-            (Self::Combine(function), _) => {
-                Component::Combine(Combine { inputs: sources, function })
-            }
-            (Self::Depend { lower, upper }, &[passive, driver]) => {
-                Component::Depend(Depend { passive, driver, lower, upper })
-            }
-            (Self::Rotate(axis), &[angle]) => Component::Rotate(Rotate { angle, axis }),
-            (Self::Pivot(axis, centre), &[angle]) => Component::Pivot(
-                Pivot::new(angle, axis, centre).map_err(|error| error.to_string())?,
-            ),
-            (Self::Translate(axis), &[distance]) => {
-                Component::Translate(Translate { distance, axis })
-            }
-            (Self::Ball, &[orientation]) => Component::Ball(Ball { orientation }),
-            (Self::Place(child_in_parent), []) => Component::Place(Place { child_in_parent }),
-            (Self::Ellipsoid(radii), &[x, y, z]) => {
-                Component::Ellipsoid(Ellipsoid { angles: [x, y, z], radii })
-            }
-            (Self::ConstantCurvature { neutral, length }, &[x, z, y]) => {
-                let angles = [x, z, y];
-                Component::ConstantCurvature(ConstantCurvature { angles, neutral, length })
-            }
-            (Self::Compensate { segment: moved, ancestors, weight }, []) => {
-                let unknown = || "it names no segments".to_owned();
-                let moved = segment(&moved).ok_or_else(unknown)?;
-                let ancestors: Vec<Option<SegmentId>> = ancestors.iter().map(segment).collect();
-                let ancestors: Option<Vec<SegmentId>> = ancestors.into_iter().collect();
-                let ancestors = ancestors.ok_or_else(unknown)?;
-                Component::Compensate(Compensate { segment: moved, ancestors, weight })
-            }
-            (Self::Product, _) => Component::Product(Product { factors: sources }),
-            _ => return Err("it has another number of inputs".to_owned()),
-        })
-    }
 }
 
 #[derive(Clone)]

@@ -5,12 +5,25 @@ use super::source::{Angles, Name, Sources, Spot};
 use super::tree::{Entry, Node, Value};
 use crate::diagnostic::nearest;
 use condyle_math::{Affine, EulerOrder, Mat3, Vec3};
+use condyle_model::component::Registry;
 use std::collections::HashMap;
 
 /// What the tree is read with.
 pub(super) struct Reader<'s> {
     pub(super) sources: &'s mut Sources,
-    pub(super) constants: HashMap<String, f64>,
+    pub(super) constants: HashMap<String, Constant>,
+    /// The laws that components of kind `custom` may name.
+    pub(super) laws: &'s Registry,
+}
+
+/// A number with a name.
+#[derive(Clone, Copy)]
+pub(super) enum Constant {
+    Is(f64),
+    /// Its text has not come yet.
+    Below,
+    /// Something is wrong with it, which was said.
+    Wrong,
 }
 
 /// A table whose keys were looked at.
@@ -92,27 +105,67 @@ impl Reader<'_> {
                 self.sources.error(node.spot, "model/not-finite", message, "give a number");
                 None
             }
-            Value::Text(text) if text.starts_with('$') || text.starts_with("-$") => {
-                let (sign, name) = match text.strip_prefix('-') {
-                    Some(rest) => (-1.0, &rest[1..]),
-                    None => (1.0, &text[1..]),
-                };
-                if let Some(value) = self.constants.get(name) {
-                    return Some(sign * value);
-                }
-                let help = match nearest(name, self.constants.keys().map(String::as_str)) {
-                    Some(near) => format!("did you mean `${near}`?"),
-                    None => "name it in the table `constants`".to_owned(),
-                };
-                let message = format!("unknown constant `${name}`");
-                self.sources.error(node.spot, "model/unknown-name", message, help);
-                None
-            }
+            Value::Text(text) if text.contains(['$', '*']) => self.product(text, node.spot),
             _ => {
                 self.wrong(node, label, "a number");
                 None
             }
         }
+    }
+
+    /// A product of numbers and constants, such as `-0.5 * $half`.
+    fn product(&mut self, text: &str, spot: Spot) -> Option<f64> {
+        let (sign, rest) = match text.trim_start().strip_prefix('-') {
+            Some(rest) => (-1.0, rest),
+            None => (1.0, text),
+        };
+        let mut product = sign;
+        // All of them are read, so that all that are wrong are named.
+        let factors: Vec<Option<f64>> =
+            rest.split('*').map(|factor| self.factor(factor.trim(), spot)).collect();
+        for factor in factors {
+            product *= factor?;
+        }
+        if product.is_finite() {
+            return Some(product);
+        }
+        let message = format!("`{text}` is not a finite number");
+        self.sources.error(spot, "model/not-finite", message, "give smaller numbers");
+        None
+    }
+
+    fn factor(&mut self, factor: &str, spot: Spot) -> Option<f64> {
+        let Some(name) = factor.strip_prefix('$') else {
+            let plain = factor.starts_with(|c: char| c.is_ascii_digit() || c == '.');
+            if let Some(number) = factor.parse().ok().filter(|_| plain) {
+                return Some(number);
+            }
+            let message = match factor {
+                "" => "a number is missing beside a `*`".to_owned(),
+                _ => format!("`{factor}` is neither a number nor a constant"),
+            };
+            let help = "write a product of them, such as \"0.245 * $stature\"";
+            self.sources.error(spot, "model/number", message, help);
+            return None;
+        };
+        match self.constants.get(name) {
+            Some(Constant::Is(value)) => return Some(*value),
+            Some(Constant::Wrong) => return None,
+            Some(Constant::Below) => {
+                let message = format!("constant `${name}` is given further down");
+                let help = "move it up: a constant may use those above it";
+                self.sources.error(spot, "model/unknown-name", message, help);
+                return None;
+            }
+            None => {}
+        }
+        let help = match nearest(name, self.constants.keys().map(String::as_str)) {
+            Some(near) => format!("did you mean `${near}`?"),
+            None => "name it in the table `constants`".to_owned(),
+        };
+        let message = format!("unknown constant `${name}`");
+        self.sources.error(spot, "model/unknown-name", message, help);
+        None
     }
 
     /// What a number at this spot has to be multiplied with, if it is an angle.

@@ -35,7 +35,7 @@ impl Reader<'_> {
         }
         let Some(entry) = first else {
             let message = format!("`{label}` has no curve");
-            let help = "give one of: constant, linear, polynomial, spline, lines";
+            let help = "give one of: constant, linear, ends, polynomial, spline, lines";
             self.sources.error(node.spot, "model/missing", message, help);
             return None;
         };
@@ -48,6 +48,12 @@ impl Reader<'_> {
             }
             "polynomial" => {
                 Curve::Polynomial(Polynomial::from_ascending(self.numbers(value, "polynomial")?))
+            }
+            "ends" => {
+                // From -1 to 1, through 0 with a slope of its own on either side.
+                let [low, high] = self.some::<2>(value, "ends")?;
+                let ends = PiecewiseLinear::new(vec![-1.0, 0.0, 1.0], vec![low, 0.0, high]);
+                Curve::PiecewiseLinear(self.through(value, ends)?)
             }
             "spline" => {
                 let (x, y) = self.pairs(value, "spline")?;

@@ -1,30 +1,85 @@
 //! Plain joints in a few lines: each becomes a joint set of the same components as any other.
 
-use super::draft::{ComponentDraft, CoordinateDraft, Draft, Law, OutputDraft};
+use super::draft::{ComponentDraft, CoordinateDraft, Draft, OutputDraft};
 use super::fields::{Fields, Reader};
 use super::keys;
+use super::law::Law;
+use super::mirror::escaped;
 use super::source::Name;
 use super::tree::{Entry, Value};
 use crate::diagnostic::nearest;
+use condyle_math::function::Function;
 use condyle_math::{EulerOrder, Vec3};
+use condyle_model::component::Along;
 use condyle_model::{CoordinateKind, Range};
+use std::collections::HashSet;
 
-/// One factor of a joint's motion: what its coordinate is called, and what it does.
-struct Motion {
-    coordinate: String,
-    kind: CoordinateKind,
-    law: Law,
+/// What a joint is made of.
+#[derive(Default)]
+struct Plan {
+    /// What its coordinates are called, and what they measure.
+    coordinates: Vec<(String, CoordinateKind)>,
+    /// Its components, the factor nearest to the parent first.
+    parts: Vec<Part>,
 }
 
-impl Motion {
-    fn turn(coordinate: &str, axis: Vec3) -> Self {
-        let kind = CoordinateKind::Rotation;
-        Self { coordinate: coordinate.to_owned(), kind, law: Law::Rotate(axis) }
+/// One component of a joint, named for its first coordinate.
+struct Part {
+    prefix: &'static str,
+    law: Law,
+    inputs: Vec<Input>,
+    /// Whether it is a factor of the motion, not only what another one reads.
+    moves: bool,
+}
+
+enum Input {
+    Coordinate(usize),
+    Part(usize),
+}
+
+impl Plan {
+    /// Adds a coordinate and the factor that it moves alone.
+    fn with(mut self, name: &str, kind: CoordinateKind, prefix: &'static str, law: Law) -> Self {
+        let inputs = vec![Input::Coordinate(self.coordinates.len())];
+        self.coordinates.push((name.to_owned(), kind));
+        self.parts.push(Part { prefix, law, inputs, moves: true });
+        self
     }
 
-    fn slide(coordinate: &str, axis: Vec3) -> Self {
-        let kind = CoordinateKind::Translation;
-        Self { coordinate: coordinate.to_owned(), kind, law: Law::Translate(axis) }
+    fn turn(self, name: &str, axis: Vec3) -> Self {
+        self.with(name, CoordinateKind::Rotation, "about", Law::Rotate(axis))
+    }
+
+    fn slide(self, name: &str, axis: Vec3) -> Self {
+        self.with(name, CoordinateKind::Translation, "along", Law::Translate(axis))
+    }
+
+    fn ball(self) -> Self {
+        self.with("orientation", CoordinateKind::Orientation, "about", Law::Ball)
+    }
+
+    fn turns(self, axes: [Vec3; 3]) -> Self {
+        ["first", "second", "third"].iter().zip(axes).fold(self, |plan, (n, a)| plan.turn(n, a))
+    }
+
+    /// A turn, and a slide along the same axis by so much for each whole turn.
+    fn screw(axis: Vec3, pitch: f64) -> Self {
+        let mut plan = Self::default().turn("angle", axis);
+        let law = Law::Map(vec![Function::linear(pitch / std::f64::consts::TAU, 0.0)]);
+        let inputs = vec![Input::Coordinate(0)];
+        plan.parts.push(Part { prefix: "pitch_of", law, inputs, moves: false });
+        let (law, inputs) = (Law::Translate(axis), vec![Input::Part(1)]);
+        plan.parts.push(Part { prefix: "along", law, inputs, moves: true });
+        plan
+    }
+
+    /// Three angles of one component.
+    fn glide(law: Law) -> Self {
+        let kind = CoordinateKind::Rotation;
+        let coordinates = ["about_x", "about_y", "about_z"].map(|name| (name.to_owned(), kind));
+        let inputs = (0..3).map(Input::Coordinate).collect();
+        let parts = vec![Part { prefix: "on_surface", law, inputs, moves: true }];
+        Self { coordinates: coordinates.to_vec(), parts }
     }
 }
 
@@ -35,7 +90,8 @@ impl Reader<'_> {
         let fields = self.table(&entry.node, set.spot, label.clone(), keys::JOINT);
         draft.sets.push(set.clone());
         let Some(kind) = fields.get("type") else {
-            let types = format!("one of: {}", keys::JOINT_TYPES.join(", "));
+            let types = format!("one of: {}", types().join(", "));
+            draft.broken.insert((set.text, String::new()));
             return self.missing(&fields, "type", &types);
         };
         let Some(kind) = self.text(kind, "type") else { return };
@@ -46,29 +102,32 @@ impl Reader<'_> {
                 None
             }
         };
-        let Some(mut motions) = self.motions(&fields, &kind) else { return };
+        let Some(mut plan) = self.plan(&fields, &kind) else {
+            draft.broken.insert((set.text, String::new()));
+            return;
+        };
         if let Some(node) = fields.get("coordinates") {
             let names = self.names(node, "coordinates").0;
-            if names.len() == motions.len() {
-                for (motion, name) in motions.iter_mut().zip(names) {
-                    motion.coordinate = name.text;
+            if names.len() == plan.coordinates.len() {
+                for (coordinate, name) in plan.coordinates.iter_mut().zip(names) {
+                    coordinate.0 = name.text;
                 }
             } else {
                 let message = format!(
                     "`coordinates` has {} names, but a {} joint has {} coordinates",
                     names.len(),
                     kind.text,
-                    motions.len()
+                    plan.coordinates.len()
                 );
-                let help = format!("give {} names", motions.len());
+                let help = format!("give {} names", plan.coordinates.len());
                 self.sources.error(node.spot, "model/length", message, help);
             }
         }
         let given = fields.get("coordinate").map(|n| self.entries(n, "coordinate"));
         let given = given.unwrap_or_default();
         for entry in given {
-            if !motions.iter().any(|m| m.coordinate == entry.key.text) {
-                let names: Vec<&str> = motions.iter().map(|m| m.coordinate.as_str()).collect();
+            if !plan.coordinates.iter().any(|(name, _)| *name == entry.key.text) {
+                let names: Vec<&str> = plan.coordinates.iter().map(|(n, _)| n.as_str()).collect();
                 let help = match nearest(&entry.key.text, names.iter().copied()) {
                     Some(near) => format!("did you mean `{near}`?"),
                     None => format!("its coordinates are: {}", names.join(", ")),
@@ -77,43 +136,39 @@ impl Reader<'_> {
                 self.sources.error(entry.key.spot, "model/unknown-name", message, help);
             }
         }
-        let names: Vec<String> = motions.iter().map(|m| m.coordinate.clone()).collect();
         let here = |text: String| Name { text, spot: set.spot };
-        let mut factors = vec![];
-        for motion in motions {
-            let name = here(motion.coordinate.clone());
+        for (name, kind) in &plan.coordinates {
             let start = CoordinateDraft {
                 set: set.text.clone(),
-                name: name.clone(),
-                kind: motion.kind,
-                default: match motion.kind {
-                    CoordinateKind::Orientation => [0.0, 0.0, 0.0, 1.0],
-                    _ => [0.0; 4],
-                },
+                name: here(name.clone()),
+                kind: *kind,
+                default: kind.neutral(),
                 range: Range::FREE,
                 locked: false,
                 source: None,
                 follows: None,
             };
-            let coordinate = match given.iter().find(|e| e.key.text == motion.coordinate) {
+            let coordinate = match given.iter().find(|e| e.key.text == *name) {
                 Some(entry) => self.coordinate(&label, entry, start, false),
                 None => start,
             };
             draft.coordinates.push(coordinate);
-            let mut component = match motion.law {
-                Law::Translate(_) => format!("along_{}", motion.coordinate),
-                _ => format!("about_{}", motion.coordinate),
+        }
+        let names = part_names(&plan);
+        let mut factors = vec![];
+        for (part, name) in plan.parts.into_iter().zip(&names) {
+            let input = |input: &Input| match input {
+                Input::Coordinate(i) => escaped(&plan.coordinates[*i].0),
+                Input::Part(i) => escaped(&names[*i]),
             };
-            while names.contains(&component) {
-                component.push('_');
+            if part.moves {
+                factors.push(here(escaped(name)));
             }
-            let component = here(component);
-            factors.push(component.clone());
             draft.components.push(ComponentDraft {
                 set: set.text.clone(),
-                name: component,
-                law: motion.law,
-                ports: vec![name],
+                name: here(name.clone()),
+                law: part.law,
+                ports: part.inputs.iter().map(|i| here(input(i))).collect(),
             });
         }
         if let Some(segment) = segment
@@ -124,96 +179,117 @@ impl Reader<'_> {
         }
     }
 
-    /// What a joint of that type is made of, the factor nearest to the parent first.
-    fn motions(&mut self, fields: &Fields<'_>, kind: &Name) -> Option<Vec<Motion>> {
+    /// What a joint of that type is made of.
+    fn plan(&mut self, fields: &Fields<'_>, kind: &Name) -> Option<Plan> {
         let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
-        let used: &[&str] = match kind.text.as_str() {
-            "hinge" => &["axis"],
-            "universal" | "planar" => &["axes"],
-            "prismatic" => &["axis", "axes"],
-            "euler" => &["axes", "order"],
-            "free" => &["order"],
-            _ => &[],
+        let Some((_, used)) = keys::JOINT_TYPES.iter().find(|(name, _)| *name == kind.text) else {
+            let help = match nearest(&kind.text, types()) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!("types are: {}", types().join(", ")),
+            };
+            let message = format!("unknown type of joint `{}`", kind.text);
+            self.sources.error(kind.spot, "model/joint-type", message, help);
+            return None;
         };
         for entry in fields.entries() {
             let key = entry.key.text.as_str();
-            if ["axis", "axes", "order"].contains(&key) && !used.contains(&key) {
+            let known = keys::JOINT.contains(&key);
+            if known && !used.contains(&key) && !keys::JOINT_BASE.contains(&key) {
                 let message = format!("a {} joint has no `{key}`", kind.text);
                 self.sources.error(entry.key.spot, "model/unknown-key", message, "leave it away");
             }
         }
-        let turns = |axes: &[Vec3], names: &[&str]| -> Vec<Motion> {
-            names.iter().zip(axes).map(|(n, a)| Motion::turn(n, *a)).collect()
-        };
+        let plan = Plan::default();
+        let other = CoordinateKind::Other;
         Some(match kind.text.as_str() {
-            "weld" => vec![],
-            "hinge" => vec![Motion::turn("angle", self.axes::<1>(fields)[0])],
-            "universal" => turns(&self.axes::<2>(fields), &["first", "second"]),
-            "ball" => vec![Motion {
-                coordinate: "orientation".to_owned(),
-                kind: CoordinateKind::Orientation,
-                law: Law::Ball,
-            }],
-            "euler" if fields.get("axes").is_some() => {
-                turns(&self.axes::<3>(fields), &["first", "second", "third"])
+            "hinge" => plan.turn("angle", self.axes::<1>(fields)[0]),
+            "universal" => {
+                let [first, second] = self.axes::<2>(fields);
+                plan.turn("first", first).turn("second", second)
             }
+            "ball" => plan.ball(),
+            "euler" if fields.get("axes").is_some() => plan.turns(self.axes::<3>(fields)),
             "euler" => {
                 let Some(node) = fields.get("order") else {
                     self.missing(fields, "order", "an order such as \"zxy\", or three `axes`");
                     return None;
                 };
                 let order = self.order(node, "order")?;
-                let axes = [0, 1, 2].map(|i| order.axis(i));
-                turns(&axes, &["first", "second", "third"])
+                plan.turns([0, 1, 2].map(|i| order.axis(i)))
             }
             "prismatic" if fields.get("axis").is_some() => {
-                vec![Motion::slide("distance", self.axes::<1>(fields)[0])]
+                plan.slide("distance", self.axes::<1>(fields)[0])
             }
             "prismatic" => {
-                let Some(node) = fields.get("axes") else {
+                if fields.get("axes").is_none() {
                     self.missing(fields, "axis", "a direction such as [0, 1, 0], or `axes`");
                     return None;
-                };
-                let list = self.list(node, "axes")?;
-                let axes: Vec<_> = list.iter().filter_map(|n| self.vector(n, "axes")).collect();
-                if axes.is_empty() || axes.len() > 3 {
-                    let message = format!("`axes` has {} directions", axes.len());
-                    self.sources.error(node.spot, "model/length", message, "give one to three");
-                    return None;
                 }
+                let axes = self.up_to_three(fields)?;
                 let names = ["first", "second", "third"];
-                names.iter().zip(axes).map(|(name, a)| Motion::slide(name, a)).collect()
+                names.iter().zip(axes).fold(plan, |plan, (name, a)| plan.slide(name, a))
             }
             "planar" => {
                 let axes = match fields.get("axes") {
                     Some(_) => self.axes::<3>(fields),
                     None => [x, y, z],
                 };
-                vec![
-                    Motion::slide("x", axes[0]),
-                    Motion::slide("y", axes[1]),
-                    Motion::turn("turn", axes[2]),
-                ]
+                plan.slide("x", axes[0]).slide("y", axes[1]).turn("turn", axes[2])
             }
             "free" => {
                 let order = fields.get("order").map(|n| self.order(n, "order"));
                 let order = order.unwrap_or(Some(EulerOrder::XYZ))?;
-                let mut motions =
-                    vec![Motion::slide("x", x), Motion::slide("y", y), Motion::slide("z", z)];
-                let axes = [0, 1, 2].map(|i| order.axis(i));
-                motions.extend(turns(&axes, &["first", "second", "third"]));
-                motions
+                let plan = plan.slide("x", x).slide("y", y).slide("z", z);
+                let ball = self.flag(fields.get("ball"), "ball", false);
+                if let Some(node) = fields.get("order").filter(|_| ball) {
+                    let message = "both `ball` and `order` are given";
+                    let help = "an orientation has no order: give one of them";
+                    self.sources.error(node.spot, "model/exclusive", message, help);
+                }
+                match ball {
+                    true => plan.ball(),
+                    false => plan.turns([0, 1, 2].map(|i| order.axis(i))),
+                }
             }
-            other => {
-                let help = match nearest(other, keys::JOINT_TYPES.iter().copied()) {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => format!("types are: {}", keys::JOINT_TYPES.join(", ")),
+            "screw" => {
+                let axis = self.axes::<1>(fields)[0];
+                let Some(node) = fields.get("pitch") else {
+                    self.missing(fields, "pitch", "how far it goes in one full turn, in metres");
+                    return None;
                 };
-                let message = format!("unknown type of joint `{other}`");
-                self.sources.error(kind.spot, "model/joint-type", message, help);
-                return None;
+                Plan::screw(axis, self.number(node, "pitch")?)
             }
+            "curve" => plan.with("parameter", other, "along", self.curve(fields)?),
+            "scale" if fields.get("axes").is_some() => {
+                if let Some(node) = fields.get("axis").or(fields.get("volume")) {
+                    let message = "`axes` stand alone";
+                    let help = "give `axes`; or one `axis`, with or without `volume`";
+                    self.sources.error(node.spot, "model/exclusive", message, help);
+                }
+                let axes = self.up_to_three(fields)?;
+                let names = ["first", "second", "third"];
+                names.iter().zip(axes).fold(plan, |plan, (name, axis)| {
+                    plan.with(name, CoordinateKind::Scale, "by", Law::Scale(Along::Axis(axis)))
+                })
+            }
+            "scale" => plan.with("factor", CoordinateKind::Scale, "by", self.scale(fields)?),
+            "shear" => plan.with("amount", other, "by", self.shear(fields)?),
+            "ellipsoid" => Plan::glide(self.ellipsoid(fields)?),
+            // A weld.
+            _ => plan,
         })
+    }
+
+    fn up_to_three(&mut self, fields: &Fields<'_>) -> Option<Vec<Vec3>> {
+        let node = fields.get("axes")?;
+        let list = self.list(node, "axes")?;
+        let axes: Vec<_> = list.iter().filter_map(|n| self.vector(n, "axes")).collect();
+        if axes.is_empty() || axes.len() > 3 {
+            let message = format!("`axes` has {} directions", axes.len());
+            self.sources.error(node.spot, "model/length", message, "give one to three");
+            return None;
+        }
+        Some(axes)
     }
 
     /// `axis`, or exactly `N` `axes`; after an error z, so that the rest of the joint is read.
@@ -238,4 +314,26 @@ impl Reader<'_> {
         }
         std::array::from_fn(|i| axes.get(i).copied().flatten().unwrap_or(Vec3::Z))
     }
+}
+
+fn types() -> Vec<&'static str> {
+    keys::JOINT_TYPES.iter().map(|(name, _)| *name).collect()
+}
+
+/// A name for each part that no coordinate and no part before it has.
+fn part_names(plan: &Plan) -> Vec<String> {
+    let mut taken: HashSet<String> =
+        plan.coordinates.iter().map(|(name, _)| name.clone()).collect();
+    let name = |part: &Part| {
+        let first = part.inputs.iter().find_map(|input| match input {
+            Input::Coordinate(i) => Some(*i),
+            Input::Part(_) => None,
+        });
+        let mut name = format!("{}_{}", part.prefix, plan.coordinates[first.unwrap_or(0)].0);
+        while !taken.insert(name.clone()) {
+            name.push('_');
+        }
+        name
+    };
+    plan.parts.iter().map(name).collect()
 }

@@ -10,16 +10,22 @@
 //! - an ellipsoid mirrored at x or y takes two of its angles negated; at z, where its own pole is
 //!   reversed, D·Rx(a)·Ry(b)·Rz(c)·D = Rx(π-a)·Ry(b)·Rz(-c)·Rx(π) and the pole comes out right;
 //! - a column takes the negated angles; its rest direction y cannot be mirrored at y.
+//!
+//! A cone's directions become D·d, the axes of its angles -D·a, and its bounds of twist \[-hi, -lo\]:
+//! D·R(r, τ)·D = R(D·r, -τ). Factors and amounts of scales and shears keep their values with D·a. What
+//! a user's law would be on the other side nobody knows: both sides are written.
 
 use super::draft::{
-    ClosureDraft, ComponentDraft, ConditionDraft, CoordinateDraft, Draft, Holder, Law, OutputDraft,
+    ClosureDraft, ComponentDraft, ConditionDraft, CoordinateDraft, Draft, Holder, OutputDraft,
     SegmentDraft,
 };
+use super::law::{Held, Law};
 use super::source::{Name, Sources};
 use condyle_math::function::{Function, SimmSpline};
 use condyle_math::{Affine, Mat3, Vec3};
 use condyle_model::CoordinateKind;
-use condyle_model::component::Centre;
+use condyle_model::component::{Along, Centre, ContactPair, Gliding, Heading};
+use condyle_model::limit::{Cone, ConePoint};
 use std::collections::HashSet;
 use std::f64::consts::PI;
 
@@ -82,9 +88,20 @@ impl Mirror {
 
         let mut made = vec![];
         for component in draft.components.iter().filter(|c| news(&sets, &c.set)) {
-            self.component(component, sources, &mut made);
+            if self.component(component, sources, &mut made).is_none() {
+                let name = self.name(&component.name.text);
+                draft.broken.insert((self.name(&component.set), name));
+            }
         }
         draft.components.extend(made);
+
+        let made: Vec<(String, String)> = draft
+            .broken
+            .iter()
+            .filter(|(set, _)| news(&sets, set))
+            .map(|(set, name)| (self.name(set), self.name(name)))
+            .collect();
+        draft.broken.extend(made);
 
         let made: Vec<OutputDraft> = draft
             .outputs
@@ -173,15 +190,46 @@ impl Mirror {
             Centre::Intervals(list) => {
                 Centre::Intervals(list.iter().map(|(to, at)| (*to, self.point(*at))).collect())
             }
-            Centre::Path(splines) => {
-                let mut splines = splines.clone();
-                let (x, y) = splines[self.axis].knots().map(|(x, y)| (x, -y)).unzip();
-                if let Ok(reversed) = SimmSpline::new(x, y) {
-                    splines[self.axis] = reversed;
-                }
-                Centre::Path(splines)
-            }
+            Centre::Path(splines) => Centre::Path(self.path(splines)),
         }
+    }
+
+    fn path(&self, splines: &[SimmSpline; 3]) -> Box<[SimmSpline; 3]> {
+        let mut splines = Box::new(splines.clone());
+        let (x, y) = splines[self.axis].knots().map(|(x, y)| (x, -y)).unzip();
+        if let Ok(reversed) = SimmSpline::new(x, y) {
+            splines[self.axis] = reversed;
+        }
+        splines
+    }
+
+    /// The same cone on the other side; none if rounding has made one of it that is none.
+    fn cone(&self, cone: &Cone) -> Option<Cone> {
+        let twist = |bounds: Option<[f64; 2]>| bounds.map(|[low, high]| [-high, -low]);
+        let point =
+            |p: &ConePoint| ConePoint { direction: self.point(p.direction), twist: twist(p.twist) };
+        let points = cone.points().iter().map(point).collect();
+        let (rest, at_rest) = (self.point(cone.rest()), twist(cone.twist_at_rest()));
+        Cone::new(rest, at_rest, points, cone.subdivisions(), cone.projection()).ok()
+    }
+
+    fn held(&self, held: &Held) -> Held {
+        match held {
+            Held::Three(axes) => Held::Three(axes.map(|a| self.turning(a))),
+            Held::Two(axes) => Held::Two(axes.map(|a| self.turning(a))),
+            Held::Orientation => Held::Orientation,
+        }
+    }
+
+    fn gliding(&self, law: &Gliding) -> Option<Gliding> {
+        let pair = |p: &ContactPair| ContactPair {
+            first: self.point(p.first),
+            second: self.point(p.second),
+            at: p.at,
+        };
+        let pairs = law.pairs().iter().map(pair).collect();
+        let pose = self.frame(law.ellipsoid_in_surface());
+        Gliding::new(pose, law.radii(), self.turning(law.axis()), pairs).ok()
     }
 
     fn condition(&self, condition: &ConditionDraft) -> ConditionDraft {
@@ -202,12 +250,13 @@ impl Mirror {
         }
     }
 
+    /// Adds a component to those made; none if it cannot be, which is reported.
     fn component(
         &self,
         component: &ComponentDraft,
         sources: &mut Sources,
         made: &mut Vec<ComponentDraft>,
-    ) {
+    ) -> Option<()> {
         let set = self.name(&component.set);
         let name = self.renamed(&component.name);
         let mut ports: Vec<Name> = component.ports.iter().map(|p| self.port(p)).collect();
@@ -224,7 +273,46 @@ impl Mirror {
             });
             *port = Name { text: escaped(&between.text), spot: between.spot };
         };
+        let mut refuse = |what: &str, help: &str| {
+            let message = format!("{what} `{}` cannot be mirrored", component.name.text);
+            sources.error(component.name.spot, "model/mirror", message, help);
+            None
+        };
         let law = match &component.law {
+            Law::Scale(along) => Law::Scale(match along {
+                Along::Everywhere => Along::Everywhere,
+                Along::Axis(axis) => Along::Axis(self.point(*axis)),
+                Along::Volume(axis) => Along::Volume(self.point(*axis)),
+            }),
+            Law::Shear { along, across } => {
+                Law::Shear { along: self.point(*along), across: self.point(*across) }
+            }
+            Law::Curve { path, heading } => {
+                let heading = heading.map(|Heading { forward, up }| Heading {
+                    forward: self.point(forward),
+                    up: self.point(up),
+                });
+                Law::Curve { path: self.path(path), heading }
+            }
+            Law::Cone(held, cone) => match self.cone(cone) {
+                Some(cone) => Law::Cone(self.held(held), cone),
+                None => return refuse("the cone", "write both sides out"),
+            },
+            Law::Contact { segment, surface, before, law } => match self.gliding(law) {
+                Some(law) => {
+                    let (segment, surface) = (self.renamed(segment), self.renamed(surface));
+                    Law::Contact { segment, surface, before: *before, law }
+                }
+                None => return refuse("the contact", "write both sides out"),
+            },
+            Law::Custom(custom) => {
+                let help = format!(
+                    "nobody but its author knows what `{}` is on the other side: write both \
+                     sides out",
+                    custom.law
+                );
+                return refuse("the user's law", &help);
+            }
             Law::Rotate(axis) => Law::Rotate(self.turning(*axis)),
             Law::Pivot(axis, centre) => Law::Pivot(self.turning(*axis), self.centre(centre)),
             Law::Compensate { segment, ancestors, weight } => Law::Compensate {
@@ -234,7 +322,7 @@ impl Mirror {
             },
             Law::Translate(axis) => Law::Translate(self.point(*axis)),
             Law::Place(frame) => Law::Place(self.frame(*frame)),
-            Law::Ellipsoid(radii) if ports.len() == 3 => {
+            Law::Ellipsoid(radii, axis) if ports.len() == 3 => {
                 // Slopes and intercepts of the three angles.
                 let [x, y, z] = match self.axis {
                     0 => [(1.0, 0.0), (-1.0, 0.0), (-1.0, 0.0)],
@@ -250,7 +338,7 @@ impl Mirror {
                 }
                 if self.axis == 2 {
                     let (surface, half) = (part("surface"), part("half_turn"));
-                    let law = Law::Ellipsoid(*radii);
+                    let law = Law::Ellipsoid(*radii, *axis);
                     let set = set.clone();
                     let name = surface.clone();
                     made.push(ComponentDraft { set: set.clone(), name, law, ports });
@@ -264,7 +352,7 @@ impl Mirror {
                         .to_vec();
                     Law::Product
                 } else {
-                    Law::Ellipsoid(*radii)
+                    Law::Ellipsoid(*radii, *axis)
                 }
             }
             Law::ConstantCurvature { neutral, length } if ports.len() == 3 => {
@@ -273,13 +361,8 @@ impl Mirror {
                     0 => [1.0, -1.0, -1.0],
                     2 => [-1.0, 1.0, -1.0],
                     _ => {
-                        let message = format!(
-                            "the column `{}` cannot be mirrored at y: it stands along y",
-                            component.name.text
-                        );
-                        let help = "write both sides, or turn its frame";
-                        sources.error(component.name.spot, "model/mirror", message, help);
-                        [1.0; 3]
+                        let help = "it stands along y: write both sides out, or turn its frame";
+                        return refuse("the column", help);
                     }
                 };
                 let whats = ["about_x", "about_z", "about_y"];
@@ -294,6 +377,7 @@ impl Mirror {
             other => other.clone(),
         };
         made.push(ComponentDraft { set, name, law, ports });
+        Some(())
     }
 }
 

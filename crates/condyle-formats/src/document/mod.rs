@@ -5,15 +5,15 @@
 //!              include = ["other.toml"], constants, mirror, and the tables below
 //! segment.S  = parent, at, turn, order, matrix (the joint in the parent),
 //!              joint_at, joint_turn, joint_order, joint_matrix (the joint in itself)
-//! joint.J    = segment, type, axis, axes, order, coordinates, coordinate.C
+//! joint.J    = segment, type and what that takes, coordinates, coordinate.C
 //! joint_set.J.coordinate.C   = kind, default, range, enforced, locked, unit, source, follows
 //! joint_set.J.component.K.X  = the inputs and parameters of a component of kind X
 //! joint_set.J.output         = SEGMENT = "K", or a list of factors
 //! marker.M   = segment, at
 //! closure.L  = points (and distance), frames, or coupling
 //! port       = "name" in the same joint set, "set.name" elsewhere, ".2" for a second output
-//! function   = number | { constant|linear|polynomial|spline|lines = ..., factor = ... }
-//! number     = a number, or "$name" of a constant
+//! function   = number | { constant|linear|ends|polynomial|spline|lines = ..., factor = ... }
+//! number     = a number, or a product of numbers and constants: "$name", "-0.5 * $name"
 //! ```
 //!
 //! The manual with examples is in `docs/model-format/`. Lengths are metres; angles are radians, or
@@ -31,6 +31,7 @@ mod fields;
 mod function;
 mod joint;
 mod keys;
+mod law;
 mod mirror;
 mod read;
 mod render;
@@ -45,6 +46,7 @@ pub use write::write;
 
 use crate::diagnostic::{Diagnostic, Read};
 use condyle_model::Model;
+use condyle_model::component::Registry;
 use fields::Reader;
 use source::Sources;
 use std::collections::HashMap;
@@ -106,9 +108,59 @@ pub fn read(
     text: &str,
     include: &mut dyn FnMut(&str) -> Result<String, String>,
 ) -> Result<Read<Document>, Vec<Diagnostic>> {
+    read_with(text, include, &Registry::default())
+}
+
+/// Reads a model document whose components of kind `custom` name these laws.
+///
+/// # Errors
+/// As [`read`], and laws that are not registered, or not with these parameters.
+///
+/// ```
+/// use condyle_formats::document;
+/// use condyle_math::{Affine, Scalar, Vec3};
+/// use condyle_model::component::{Law, Registry};
+///
+/// /// A bone that is lifted with the square of an angle.
+/// #[derive(Debug)]
+/// struct Lift(f64);
+/// impl Law for Lift {
+///     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
+///         let height = inputs[0] * inputs[0] * S::from_f64(self.0);
+///         Affine::from_translation(Vec3::new(S::zero(), height, S::zero()))
+///     }
+/// }
+/// let mut laws = Registry::default();
+/// laws.register("lift", &["angle"], |parameters| {
+///     let height = parameters.get("height").and_then(|list| list.first());
+///     Ok(Lift(*height.ok_or("it needs a `height` in metres")?))
+/// });
+///
+/// let text = r#"
+/// condyle = 1
+/// kind = "model"
+/// [segment.scapula]
+/// [joint_set.girdle.coordinate.elevation]
+/// [joint_set.girdle.component.raise.custom]
+/// law = "lift"
+/// inputs = ["elevation"]
+/// parameters = { height = 0.02 }
+/// [joint_set.girdle.output]
+/// scapula = "raise"
+/// "#;
+/// let mut alone = |_: &str| Err("it stands alone".into());
+/// assert!(document::read_with(text, &mut alone, &laws).is_ok());
+/// let errors = document::read(text, &mut alone).unwrap_err();
+/// assert!(errors[0].to_string().starts_with("line 7, column 7: no law `lift` is registered"));
+/// ```
+pub fn read_with(
+    text: &str,
+    include: &mut dyn FnMut(&str) -> Result<String, String>,
+    laws: &Registry,
+) -> Result<Read<Document>, Vec<Diagnostic>> {
     let mut sources = Sources::default();
     let model = tree::load(&mut sources, text, include).and_then(|entries| {
-        let mut reader = Reader { sources: &mut sources, constants: HashMap::new() };
+        let mut reader = Reader { sources: &mut sources, constants: HashMap::new(), laws };
         let draft = reader.draft(entries);
         resolve::build(draft, &mut sources)
     });

@@ -1,6 +1,7 @@
 //! Names to positions, and the draft to a checked model.
 
-use super::draft::{ConditionDraft, Draft, Holder, Law};
+use super::draft::{ConditionDraft, Draft, Holder};
+use super::law::Law;
 use super::source::{Name, Sources, Spot};
 use crate::diagnostic::{Diagnostic, nearest};
 use condyle_math::{Affine, Vec3};
@@ -10,7 +11,7 @@ use condyle_model::{
     Closure, CoordinateId, CoordinateKind, Finding, Model, ModelBuilder, SegmentId, Severity,
     Source,
 };
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// The most numbers that a compiled model may keep of its products, and of its derivatives.
 const MOST_FACTORS: u64 = 1 << 20;
@@ -32,6 +33,7 @@ pub(super) fn build(draft: Draft, sources: &mut Sources) -> Option<Model> {
         segments: HashMap::new(),
         sets: HashMap::new(),
         names: HashMap::new(),
+        broken: HashSet::new(),
         places: vec![],
     };
     resolver.all(draft);
@@ -134,6 +136,8 @@ struct Resolver<'s> {
     segments: HashMap<String, SegmentId>,
     sets: HashMap<String, JointSetId>,
     names: HashMap<(String, String), Meaning>,
+    /// Components that could not be read, by joint set and name; joints with no name behind.
+    broken: HashSet<(String, String)>,
     /// What findings call things, and where those stand.
     places: Vec<(String, Spot)>,
 }
@@ -141,6 +145,7 @@ struct Resolver<'s> {
 impl Resolver<'_> {
     fn all(&mut self, draft: Draft) {
         self.builder.up(draft.up);
+        self.broken = draft.broken;
         for s in &draft.segments {
             let id = self.builder.segment(&s.name.text, None);
             self.builder.place_joint_frames(id, s.in_parent, s.in_itself);
@@ -192,7 +197,6 @@ impl Resolver<'_> {
             let Source::Output(id, _) = source else { continue };
             let (port, outputs) = c.law.outputs();
             self.mean(&c.set, &c.name, Meaning { source, port, outputs });
-            self.places.push((format!("component `{}` ", c.name.text), c.name.spot));
             self.places.push((format!("{}.{}", c.set, c.name.text), c.name.spot));
             components.push((id, c.set, c.name, c.law, c.ports));
         }
@@ -204,7 +208,6 @@ impl Resolver<'_> {
             }
         }
         for (id, set, name, law, ports) in components {
-            let wanted = law.inputs();
             if let Law::Combine(function) = &law
                 && function.arity() != ports.len()
             {
@@ -218,13 +221,21 @@ impl Resolver<'_> {
                 self.sources.error(name.spot, "model/arity", message, help);
                 continue;
             }
-            let connected: Vec<Option<Source>> =
-                ports.iter().map(|p| self.port(&set, p, wanted)).collect();
+            let connected: Vec<Option<Source>> = ports
+                .iter()
+                .enumerate()
+                .map(|(position, port)| self.port(&set, port, law.input(position)))
+                .collect();
             let connected: Option<Vec<Source>> = connected.into_iter().collect();
             let Some(connected) = connected else { continue };
-            let before = self.sources.count();
+            let (before, spot) = (self.sources.count(), name.spot);
             match law.build(connected, &mut |name| self.segment(name)) {
-                Ok(component) => *self.builder.component_mut(id) = component,
+                Ok(component) => {
+                    let (name, kind) = (&name.text, component.kind());
+                    let phrase = format!("component `{name}` ({kind}) of joint set `{set}`");
+                    self.places.push((phrase, spot));
+                    *self.builder.component_mut(id) = component;
+                }
                 // Unknown segments were named already.
                 Err(_) if self.sources.count() > before => {}
                 Err(why) => {
@@ -366,7 +377,9 @@ impl Resolver<'_> {
             _ => None,
         };
         let Some((meaning, output)) = found else {
-            self.unknown(own, port, &parts);
+            if !self.is_broken(own, &parts) {
+                self.unknown(own, port, &parts);
+            }
             return None;
         };
         if output == 0 || output > meaning.outputs {
@@ -376,12 +389,18 @@ impl Resolver<'_> {
             return None;
         }
         if meaning.port != wanted {
-            let word = |port: PortType| format!("{port:?}").to_lowercase();
+            let word = |port: PortType| match port {
+                PortType::Scalar => "a scalar",
+                PortType::Orientation => "an orientation",
+                PortType::Transform => "a transform",
+            };
             let message =
-                format!("`{}` is a {}, not a {}", port.text, word(meaning.port), word(wanted));
+                format!("`{}` is {}, not {}", port.text, word(meaning.port), word(wanted));
             let help = match wanted {
                 PortType::Scalar => "name a coordinate that is one number, a map or a combine",
-                PortType::Orientation => "name a coordinate of kind \"orientation\"",
+                PortType::Orientation => {
+                    "name a coordinate of kind \"orientation\", or a cone that holds one"
+                }
                 PortType::Transform => "name a component such as rotate, translate or product",
             };
             self.sources.error(port.spot, "model/port-type", message, help);
@@ -391,6 +410,17 @@ impl Resolver<'_> {
             Source::Output(id, _) => Source::Output(id, output as u32 - 1),
             coordinate => coordinate,
         })
+    }
+
+    /// Whether a port names something that is there, but could not be read.
+    fn is_broken(&self, own: &str, parts: &[String]) -> bool {
+        let has = |set: &str, name: &str| self.broken.contains(&(set.to_owned(), name.to_owned()));
+        match parts {
+            [name] => has(own, name),
+            [first, second] => has(first, second) || has(own, first) || has(first, ""),
+            [set, name, _] => has(set, name) || has(set, ""),
+            _ => false,
+        }
     }
 
     fn unknown(&mut self, own: &str, port: &Name, parts: &[String]) {

@@ -1,15 +1,10 @@
 //! What is wrong is said with its place, all at once.
 
-use super::try_read;
+use super::{errors, try_read};
 use condyle_formats::document;
 use proptest::prelude::*;
 
 const HEAD: &str = "condyle = 1\nkind = \"model\"\n";
-
-fn errors(body: &str) -> Vec<String> {
-    let errors = try_read(&format!("{HEAD}{body}")).expect_err(body);
-    errors.iter().map(ToString::to_string).collect()
-}
 
 #[test]
 fn many_errors_come_at_once_in_the_order_of_the_text() {
@@ -113,6 +108,43 @@ fn depth_is_bounded() {
     ] {
         assert!(try_read(&text).is_err());
     }
+}
+
+#[test]
+fn what_reads_a_broken_component_is_not_blamed() {
+    let found = errors(
+        "[segment.s]\n[joint_set.j.component.k.cone]\nangles = [\"q\"]\norder = \"zxy\"\n\
+         rest = [0, 1, 0]\npoints = []\n[joint_set.j.component.t.rotate]\nangle = \"k.2\"\n\
+         axis = [0, 0, 1]\n[joint_set.j.component.u.rotate]\nangle = \"j.k\"\naxis = [1, 0, 0]\n",
+    );
+    assert_eq!(
+        found,
+        [
+            "line 5, column 10: `angles` has 1 names (give three angles, or two where the bone does \
+             not turn about itself)",
+            "line 8, column 10: 0 points enclose nothing (give at least 3, in their order around \
+             `rest`)",
+        ]
+    );
+}
+
+#[test]
+fn what_reads_a_broken_joint_is_not_blamed() {
+    let found = errors(
+        "[segment.s]\n[joint.a]\ntype = \"euler\"\nsegment = \"s\"\n[joint_set.b.coordinate.q]\n\
+         follows = \"a.first\"\n",
+    );
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].starts_with("line 4, column 8: [joint.a] has no `order`"), "{found:?}");
+}
+
+#[test]
+fn a_component_is_found_in_its_own_joint_set() {
+    let found = errors(
+        "[joint_set.a.coordinate.q]\n[joint_set.a.component.k.rotate]\nangle = \"q\"\n\
+         axis = [0, 0, 1]\n[joint_set.b.component.k.rotate]\nangle = \"a.q\"\naxis = [0, 0, 0]\n",
+    );
+    assert!(found[0].starts_with("line 7, column 24: the axis of component `k`"), "{found:?}");
 }
 
 #[test]

@@ -22,7 +22,7 @@
 
 use super::Source;
 use crate::limit::Cone;
-use condyle_math::{Mat3, Quat, Vec3};
+use condyle_math::{Mat3, Quat, Scalar, Vec3};
 use std::f64::consts::TAU;
 
 /// A ball joint that stays inside a cone.
@@ -96,7 +96,7 @@ impl JointCone {
         let mut moving = [Vec3::ZERO; 3];
         for ((angle, axis), out) in numbers.iter().zip(axes).zip(&mut moving) {
             *out = turned * axis;
-            turned = turned * Mat3::rotation_about(axis, angle.sin_cos());
+            turned = turned * Mat3::rotation_about(axis, Scalar::sin_cos(*angle));
         }
         (turned, moving)
     }

@@ -54,7 +54,7 @@ pub use combine::Combine;
 pub use compensate::Compensate;
 pub use cone::{JointCone, Swinging};
 pub use constant_curvature::ConstantCurvature;
-pub use contact::{Contact, ContactPair, Glide, Gliding};
+pub use contact::{Contact, ContactError, ContactPair, Glide, Gliding};
 pub use curve::{Curve, Heading};
 pub use custom::{Custom, ErasedLaw, LawDual, Parameters, Registry};
 pub use depend::Depend;

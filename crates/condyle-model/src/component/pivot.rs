@@ -16,9 +16,10 @@
 //! closed form: with A = [a]× and everything taken across the axis,
 //!
 //! ```text
-//! t = p(α) + R(a, α - α₀)·(t₀ - p(α₀)),   p = c - A·c′ - c″ + A·c‴
+//! t = p(α) + R(a, α)·m,   p = c - A·c′ - c″ + A·c‴,   m = R(a, -α₀)·(t₀ - p(α₀))
 //! ```
 //!
+//! where the piece begins at α₀ with t₀. p is a cubic of α, too, and c = p + A·p′ across the axis.
 //! Intervals of width h come as near to it as h. Generator: the rotation (a, c × a) about the centre.
 //! Kinks: at the ends of intervals the centre jumps, and with it the second derivative.
 
@@ -33,9 +34,19 @@ pub struct Pivot {
     pub angle: Source,
     axis: Vec3,
     centre: Centre,
-    /// Where the pieces meet, outwards from 0, with t there: for angles above and below 0.
-    above: Vec<(f64, Vec3)>,
-    below: Vec<(f64, Vec3)>,
+    /// Where a piece ends, from the lowest angle up; the last one has no end.
+    ends: Vec<f64>,
+    pieces: Vec<Piece>,
+}
+
+/// A stretch of angles on which the centre is a cubic: t = p(α) + R·m.
+#[derive(Clone, Debug, PartialEq)]
+struct Piece {
+    /// An angle inside, from which the cubic counts.
+    from: f64,
+    /// p and its derivatives there, the k-th over k!.
+    particular: [Vec3; 4],
+    lag: Vec3,
 }
 
 /// Where the centre of a [`Pivot`] is at each angle.
@@ -108,16 +119,32 @@ impl Pivot {
                 }
             }
         };
-        let start = vec![(0.0, Vec3::ZERO)];
         let mut pivot =
-            Self { angle, axis: axis.normalized(), centre, above: start.clone(), below: start };
-        for &end in ends.iter().filter(|&&end| end > 0.0) {
-            let place = pivot.place(end);
-            pivot.above.push((end, place));
+            Self { angle, axis: axis.normalized(), centre, ends: vec![], pieces: vec![] };
+        // From 0 outwards, each piece beginning where the one before it left the frame.
+        let mut sides = [vec![], vec![]];
+        for (side, sign) in sides.iter_mut().zip([-1.0, 1.0]) {
+            let mut outer: Vec<f64> = ends.iter().map(|e| e * sign).filter(|e| *e > 0.0).collect();
+            outer.sort_by(f64::total_cmp);
+            let (mut begin, mut place) = (0.0, Vec3::ZERO);
+            for end in outer.into_iter().chain([f64::INFINITY]) {
+                let inside = 0.5 * (begin + end.min(begin + 1.0));
+                let piece = pivot.piece(sign * begin, sign * inside, place);
+                place = pivot.place_on(&piece, sign * end.min(begin + 1e9)).0;
+                side.push((sign * begin, piece));
+                begin = end;
+            }
         }
-        for &end in ends.iter().rev().filter(|&&end| end < 0.0) {
-            let place = pivot.place(end);
-            pivot.below.push((end, place));
+        let [below, above] = sides;
+        for (begin, piece) in below.into_iter().rev() {
+            pivot.ends.push(begin);
+            pivot.pieces.push(piece);
+        }
+        for (begin, piece) in above {
+            if begin > 0.0 {
+                pivot.ends.push(begin);
+            }
+            pivot.pieces.push(piece);
         }
         Ok(pivot)
     }
@@ -132,62 +159,88 @@ impl Pivot {
         &self.centre
     }
 
-    /// The piece that an angle falls into: where it begins, nearest to 0, and t there.
-    fn piece(&self, angle: f64) -> (f64, Vec3) {
-        let list = if angle < 0.0 { &self.below } else { &self.above };
-        let reached = list.partition_point(|(begin, _)| begin.abs() < angle.abs());
-        list[reached.saturating_sub(1)]
+    /// The centre, if it stays where it is.
+    pub fn fixed_centre(&self) -> Option<Vec3> {
+        match &self.centre {
+            Centre::Intervals(list) => match list[..] {
+                [(_, centre)] => Some(centre),
+                _ => None,
+            },
+            Centre::Path(_) => None,
+        }
     }
 
-    /// The centre on the piece that runs from `begin` to `angle`, with its derivatives there.
-    fn centre_on(&self, begin: f64, angle: f64, at: f64) -> [Vec3; 4] {
-        match &self.centre {
+    /// The piece around an angle inside it that begins with the frame at `place`.
+    fn piece(&self, begin: f64, inside: f64, place: Vec3) -> Piece {
+        let [c, d1, d2, d3] = match &self.centre {
             Centre::Intervals(list) => {
-                // The inside of the piece tells which interval it is.
-                let inside = 0.5 * (begin + angle);
                 let index = list.partition_point(|(to, _)| *to < inside).min(list.len() - 1);
                 [list[index].1, Vec3::ZERO, Vec3::ZERO, Vec3::ZERO]
             }
             Centre::Path(splines) => {
-                // Derivatives of the piece's own cubic, also at its far end.
-                let inside = 0.5 * (begin + angle);
-                let [x, y, z] = [0, 1, 2].map(|i: usize| {
-                    let [v, d1, d2, d3] = splines[i].derivatives(inside);
-                    let h = at - inside;
-                    [
-                        v + h * (d1 + h * (d2 / 2.0 + h * d3 / 6.0)),
-                        d1 + h * (d2 + h * d3 / 2.0),
-                        d2 + h * d3,
-                        d3,
-                    ]
-                });
+                let [x, y, z] = [0, 1, 2].map(|i: usize| splines[i].derivatives(inside));
                 [0, 1, 2, 3].map(|k: usize| Vec3::new(x[k], y[k], z[k]))
+            }
+        };
+        let a = self.axis;
+        let across = |v: Vec3| v - a * a.dot(v);
+        let particular = [
+            across(c) - a.cross(d1) - across(d2) + a.cross(d3),
+            across(d1) - a.cross(d2) - across(d3),
+            (across(d2) - a.cross(d3)) * 0.5,
+            across(d3) * (1.0 / 6.0),
+        ];
+        let mut piece = Piece { from: inside, particular, lag: Vec3::ZERO };
+        let back = Mat3::rotation_about(a, (-begin).sin_cos());
+        piece.lag = back * (place - piece.particular_at(begin).0);
+        piece
+    }
+
+    /// The piece that an angle falls into; at an end the one nearer to 0.
+    #[inline]
+    fn piece_at(&self, angle: f64) -> &Piece {
+        let index = if angle < 0.0 {
+            self.ends.partition_point(|&end| end <= angle)
+        } else {
+            self.ends.partition_point(|&end| end < angle)
+        };
+        &self.pieces[index.min(self.pieces.len() - 1)]
+    }
+
+    /// Where the frame's origin is at an angle of a piece, and how it moves.
+    #[inline]
+    fn place_on(&self, piece: &Piece, angle: f64) -> (Vec3, Vec3) {
+        let turned = Mat3::rotation_about(self.axis, Scalar::sin_cos(angle)) * piece.lag;
+        let (particular, slope) = piece.particular_at(angle);
+        (particular + turned, slope + self.axis.cross(turned))
+    }
+
+    /// The instantaneous centre at an angle: the point of the parent that does not move, moved along
+    /// the axis to where it was given.
+    pub fn centre_at(&self, angle: f64) -> Vec3 {
+        match &self.centre {
+            Centre::Path(splines) => {
+                Vec3::from([0, 1, 2].map(|i: usize| splines[i].value_and_slope(angle).0))
+            }
+            Centre::Intervals(list) => {
+                let reached = match angle < 0.0 {
+                    true => list.partition_point(|(to, _)| *to <= angle),
+                    false => list.partition_point(|(to, _)| *to < angle),
+                };
+                list[reached.min(list.len() - 1)].1
             }
         }
     }
+}
 
-    /// Where the frame's origin is at an angle.
-    fn place(&self, angle: f64) -> Vec3 {
-        let (begin, start) = self.piece(angle);
-        if angle == begin {
-            return start;
-        }
-        let a = self.axis;
-        let across = |v: Vec3| v - a * a.dot(v);
-        let particular = |at: f64| {
-            let [c, d1, d2, d3] = self.centre_on(begin, angle, at);
-            across(c) - a.cross(d1) - across(d2) + a.cross(d3)
-        };
-        let turn = Mat3::rotation_about(a, (angle - begin).sin_cos());
-        particular(angle) + turn * (start - particular(begin))
-    }
-
-    /// The instantaneous centre at an angle: the point of the parent that does not move.
-    pub fn centre_at(&self, angle: f64) -> Vec3 {
-        let (begin, _) = self.piece(angle);
-        // On a piece of no length (at 0) look a little outwards.
-        let end = if angle == begin { begin + 1e-9 } else { angle };
-        self.centre_on(begin, end, angle)[0]
+impl Piece {
+    /// p and p′.
+    #[inline]
+    fn particular_at(&self, angle: f64) -> (Vec3, Vec3) {
+        let h = angle - self.from;
+        let [p0, p1, p2, p3] = self.particular;
+        let value = p0 + (p1 + (p2 + p3 * h) * h) * h;
+        (value, p1 + (p2 * 2.0 + p3 * (3.0 * h)) * h)
     }
 }
 
@@ -196,13 +249,15 @@ impl Law for Pivot {
     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
         let angle = inputs[0];
         let rotation = Mat3::rotation_about(self.axis.cast(), angle.sin_cos());
-        let component = |pick: fn(Vec3) -> f64| {
+        let piece = self.piece_at(angle.value());
+        let (particular, lag) = (|k: fn(Vec3) -> f64| {
             angle.chain(|x| {
-                let place = self.place(x);
-                (pick(place), pick(self.axis.cross(place - self.centre_at(x))))
+                let (value, slope) = piece.particular_at(x);
+                (k(value), k(slope))
             })
-        };
-        Affine::new(rotation, Vec3::new(component(|v| v.x), component(|v| v.y), component(|v| v.z)))
+        }, piece.lag.cast());
+        let place = Vec3::new(particular(|v| v.x), particular(|v| v.y), particular(|v| v.z));
+        Affine::new(rotation, place + rotation * lag)
     }
 }
 
@@ -288,8 +343,9 @@ mod tests {
         let h = 1e-6;
         for i in 0..60 {
             let angle = -1.7 + 0.0737 * f64::from(i);
-            let slope = (pivot.place(angle + h) - pivot.place(angle - h)) * (0.5 / h);
-            let exact = pivot.axis().cross(pivot.place(angle) - pivot.centre_at(angle));
+            let place = |angle| pivot.transform(&[angle]).translation;
+            let slope = (place(angle + h) - place(angle - h)) * (0.5 / h);
+            let exact = pivot.axis().cross(place(angle) - pivot.centre_at(angle));
             assert!((slope - exact).norm() < 1e-8, "{angle}");
         }
     }

@@ -1,6 +1,7 @@
 //! Running the elementary steps of a chain.
 
 use super::instruction::{Code, Step};
+use super::pose::Pose;
 use crate::component::{Law, MOST_LAW_INPUTS, shear};
 use condyle_math::{Affine, Mat3, Quat, Scalar, Twist, Vec3};
 
@@ -32,12 +33,7 @@ pub(super) struct Silent;
 
 impl<S> Recorder<S> for Silent {
     #[inline(always)]
-    fn motion(
-        &mut self,
-        _: Affine<S>,
-        _: impl FnOnce() -> Twist<S>,
-        _: impl FnOnce() -> Twist<S>,
-    ) {
+    fn motion(&mut self, _: Affine<S>, _: impl FnOnce() -> Twist<S>, _: impl FnOnce() -> Twist<S>) {
     }
     #[inline(always)]
     fn deformation(&mut self, _: Affine<S>, _: impl FnOnce() -> Mat3) {}
@@ -66,8 +62,7 @@ pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
     code: &Code,
     steps: &[Step],
     base: Affine<S>,
-    scalars: &[S],
-    transforms: &[Affine<S>],
+    pose: &Pose<S>,
     recorder: &mut R,
 ) -> Affine<S> {
     let mut frame = base;
@@ -76,74 +71,98 @@ pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
         match *step {
             Step::Shift(offset) => frame = frame.shifted(offset.cast()),
             Step::Fixed(index) => frame = frame * code.fixed[index as usize].cast(),
-            Step::TurnX(angle) => {
-                let turn = || Twist::rotation(Vec3::X.cast(), Vec3::zero());
-                recorder.motion(frame, turn, || Twist::rotation(r.x, origin));
-                frame.linear = r.rotated_x(scalars[angle as usize].sin_cos());
+            Step::TurnX(turn) => {
+                let inside = || Twist::rotation(Vec3::X.cast(), Vec3::zero());
+                recorder.motion(frame, inside, || Twist::rotation(r.x, origin));
+                frame.linear = r.rotated_x(pose.turn(turn));
             }
-            Step::TurnY(angle) => {
-                let turn = || Twist::rotation(Vec3::Y.cast(), Vec3::zero());
-                recorder.motion(frame, turn, || Twist::rotation(r.y, origin));
-                frame.linear = r.rotated_y(scalars[angle as usize].sin_cos());
+            Step::TurnY(turn) => {
+                let inside = || Twist::rotation(Vec3::Y.cast(), Vec3::zero());
+                recorder.motion(frame, inside, || Twist::rotation(r.y, origin));
+                frame.linear = r.rotated_y(pose.turn(turn));
             }
-            Step::TurnZ(angle) => {
-                let turn = || Twist::rotation(Vec3::Z.cast(), Vec3::zero());
-                recorder.motion(frame, turn, || Twist::rotation(r.z, origin));
-                frame.linear = r.rotated_z(scalars[angle as usize].sin_cos());
+            Step::TurnZ(turn) => {
+                let inside = || Twist::rotation(Vec3::Z.cast(), Vec3::zero());
+                recorder.motion(frame, inside, || Twist::rotation(r.z, origin));
+                frame.linear = r.rotated_z(pose.turn(turn));
             }
-            Step::Turn { axis, angle } => {
+            Step::Turn { axis, turn } => {
                 let axis: Vec3<S> = axis.cast();
                 let inside = || Twist::rotation(axis, Vec3::zero());
                 recorder.motion(frame, inside, || Twist::rotation(r * axis, origin));
-                let turn = Mat3::rotation_about(axis, scalars[angle as usize].sin_cos());
-                frame.linear = r * turn;
+                frame.linear = r * Mat3::rotation_about(axis, pose.turn(turn));
             }
             Step::Slide { axis, distance } => {
                 let along = r * axis.cast();
                 let inside = || Twist::translation(axis.cast());
                 recorder.motion(frame, inside, || Twist::translation(along));
-                frame.translation = origin + along * scalars[distance as usize];
+                frame.translation = origin + along * pose.scalars[distance as usize];
+            }
+            Step::Move(distances) => {
+                for (unit, along) in Vec3::UNITS.into_iter().zip([r.x, r.y, r.z]) {
+                    let inside = || Twist::translation(unit.cast());
+                    recorder.motion(frame, inside, || Twist::translation(along));
+                }
+                let [x, y, z] = distances.map(|distance| pose.scalars[distance as usize]);
+                frame = frame.shifted(Vec3::new(x, y, z));
             }
             Step::Ball(orientation) => {
                 let q = orientation as usize;
-                let q = [scalars[q], scalars[q + 1], scalars[q + 2], scalars[q + 3]];
-                frame.linear = r * Quat::from(q).to_mat3();
+                let q: &[S; 4] = pose.scalars[q..].first_chunk().expect("four registers");
+                frame.linear = r * Quat::from(*q).to_mat3();
                 let turned = frame.linear;
                 for (unit, axis) in Vec3::UNITS.into_iter().zip([turned.x, turned.y, turned.z]) {
                     let inside = || Twist::rotation(unit.cast(), Vec3::zero());
                     recorder.motion(frame, inside, || Twist::rotation(axis, origin));
                 }
             }
-            Step::Stretch { along, factor } => {
-                let (along, factor) = (code.scales[along as usize], scalars[factor as usize]);
-                recorder.deformation(frame, || along.rate(factor.value()));
-                frame.linear = r * along.matrix(factor);
-            }
-            Step::Shear { directions, amount } => {
-                let [along, across] = code.shears[directions as usize];
-                let amount = scalars[amount as usize];
-                recorder.deformation(frame, || shear::rate(along, across, amount.value()));
-                frame.linear = r * shear::matrix(along, across, amount);
-            }
-            Step::Law(index) => {
-                recorder.law(code, index, frame);
-                let call = &code.laws[index as usize];
-                let mut inputs = [S::zero(); MOST_LAW_INPUTS];
-                for (value, &register) in inputs.iter_mut().zip(&call.inputs) {
-                    *value = scalars[register as usize];
-                }
-                frame = frame * call.law.transform(&inputs[..call.inputs.len()]);
-            }
             Step::Transform(register) => {
                 recorder.transform(register, frame);
-                frame = frame * transforms[register as usize];
+                frame = frame * pose.transforms[register as usize];
             }
-            Step::Power { of, exponent } => {
-                let rotation = transforms[of as usize].linear;
-                recorder.power(of, exponent, rotation, frame);
-                frame.linear = r * power(rotation, exponent);
-            }
+            _ => frame = rare_step(code, *step, frame, pose, recorder),
         }
+    }
+    frame
+}
+
+/// The steps that few joints have.
+#[inline(always)]
+fn rare_step<S: Scalar, R: Recorder<S>>(
+    code: &Code,
+    step: Step,
+    mut frame: Affine<S>,
+    pose: &Pose<S>,
+    recorder: &mut R,
+) -> Affine<S> {
+    let (r, scalars) = (frame.linear, &pose.scalars);
+    match step {
+        Step::Stretch { along, factor } => {
+            let (along, factor) = (code.scales[along as usize], scalars[factor as usize]);
+            recorder.deformation(frame, || along.rate(factor.value()));
+            frame.linear = r * along.matrix(factor);
+        }
+        Step::Shear { directions, amount } => {
+            let [along, across] = code.shears[directions as usize];
+            let amount = scalars[amount as usize];
+            recorder.deformation(frame, || shear::rate(along, across, amount.value()));
+            frame.linear = r * shear::matrix(along, across, amount);
+        }
+        Step::Law(index) => {
+            recorder.law(code, index, frame);
+            let call = &code.laws[index as usize];
+            let mut inputs = [S::zero(); MOST_LAW_INPUTS];
+            for (value, &register) in inputs.iter_mut().zip(&call.inputs) {
+                *value = scalars[register as usize];
+            }
+            frame = frame * call.law.transform(&inputs[..call.inputs.len()]);
+        }
+        Step::Power { of, exponent } => {
+            let rotation = pose.transforms[of as usize].linear;
+            recorder.power(of, exponent, rotation, frame);
+            frame.linear = r * power(rotation, exponent);
+        }
+        _ => {}
     }
     frame
 }

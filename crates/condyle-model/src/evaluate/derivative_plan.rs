@@ -64,7 +64,6 @@ pub(super) struct DerivativePlan {
 /// Marks a twist without a strain.
 pub(super) const RIGID: u32 = u32::MAX;
 
-
 impl DerivativePlan {
     /// The directions that move a segment, with their twists.
     #[inline]
@@ -176,21 +175,28 @@ pub(super) fn plan(
                 plan.ball(&mut moving, &scalars[*orientation as usize]);
                 transforms[*output as usize] = plan.close(moving, deforming, *output);
             }
-            Instruction::Chain { base, first, end, output } => {
+            Instruction::Chain { base, first, end, output, .. } => {
                 let mut moving = plan.inherit(&transforms, *base);
                 let mut deforming = plan.deforms(*base);
                 for step in &code.steps[*first as usize..*end as usize] {
                     deforming |= !step.is_rigid(code, |register| !plan.deforms(register));
                     match *step {
                         Step::Fixed(_) | Step::Shift(_) => {}
-                        Step::TurnX(s)
-                        | Step::TurnY(s)
-                        | Step::TurnZ(s)
-                        | Step::Turn { angle: s, .. }
-                        | Step::Slide { distance: s, .. }
+                        Step::TurnX(turn)
+                        | Step::TurnY(turn)
+                        | Step::TurnZ(turn)
+                        | Step::Turn { turn, .. } => {
+                            plan.unit(&mut moving, &scalars[code.turns[turn as usize] as usize]);
+                        }
+                        Step::Slide { distance: s, .. }
                         | Step::Stretch { factor: s, .. }
                         | Step::Shear { amount: s, .. } => {
                             plan.unit(&mut moving, &scalars[s as usize]);
+                        }
+                        Step::Move(distances) => {
+                            for distance in distances {
+                                plan.unit(&mut moving, &scalars[distance as usize]);
+                            }
                         }
                         Step::Ball(s) => plan.ball(&mut moving, &scalars[s as usize]),
                         Step::Law(index) => {
@@ -299,12 +305,7 @@ impl DerivativePlan {
         register != NO_BASE && self.deforming[register as usize]
     }
 
-    fn close(
-        &mut self,
-        mut moving: Vec<Moving>,
-        deforming: bool,
-        output: u32,
-    ) -> Vec<(u32, u32)> {
+    fn close(&mut self, mut moving: Vec<Moving>, deforming: bool, output: u32) -> Vec<(u32, u32)> {
         self.deforming[output as usize] = deforming;
         if deforming {
             self.strain_slots.resize(self.twists, RIGID);

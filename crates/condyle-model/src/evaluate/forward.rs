@@ -63,30 +63,42 @@ impl Program {
         pose: &mut Pose<S>,
     ) -> Result<(), SizeMismatch> {
         self.load(requested, mode, pose)?;
-        let is_ball = |i: &Instruction| matches!(i, Instruction::BallAt { .. });
-        // Balls in runs, everything else one by one.
-        for run in self.code.instructions.chunk_by(|a, b| is_ball(a) && is_ball(b)) {
-            match run[0] {
-                Instruction::BallAt { .. } => run_balls(run, pose),
-                Instruction::Chain { base, first, end, output } => {
-                    let from = if base == NO_BASE {
+        let (scalars, transforms) = self.code.instructions.split_at(self.code.scalar_instructions);
+        for instruction in scalars {
+            self.run_scalar(instruction, mode, &mut pose.scalars);
+        }
+        pose.take_turns(&self.code.turns);
+        // The frame made last, in registers: most chains hang on the one before, and what was just
+        // written to memory in pieces is slow to come back whole.
+        let mut last = (NO_BASE, Affine::identity());
+        let mut rest = transforms;
+        while let Some(first) = rest.first() {
+            // Balls in runs, everything else one by one.
+            let mut count = 1;
+            match *first {
+                Instruction::BallAt { .. } => {
+                    let is_ball = |i: &Instruction| matches!(i, Instruction::BallAt { .. });
+                    count = rest.iter().position(|i| !is_ball(i)).unwrap_or(rest.len());
+                    run_balls(&rest[..count], pose);
+                }
+                Instruction::Chain { base, shift, first, end, output } => {
+                    let from = if base == last.0 {
+                        last.1
+                    } else if base == NO_BASE {
                         Affine::identity()
                     } else {
                         pose.transforms[base as usize]
                     };
                     let steps = &self.code.steps[first as usize..end as usize];
-                    pose.transforms[output as usize] = run_chain(
-                        &self.code,
-                        steps,
-                        from,
-                        &pose.scalars,
-                        &pose.transforms,
-                        &mut Silent,
-                    );
+                    let from = from.shifted(shift.cast());
+                    let frame = run_chain(&self.code, steps, from, pose, &mut Silent);
+                    pose.transforms[output as usize] = frame;
+                    last = (output, frame);
                 }
                 Instruction::Contact { contact } => self.run_contact(contact, pose),
-                _ => self.run_scalar(&run[0], mode, &mut pose.scalars),
+                _ => {}
             }
+            rest = &rest[count..];
         }
         Ok(())
     }

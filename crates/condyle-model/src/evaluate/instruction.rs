@@ -12,6 +12,14 @@ pub(super) const NO_BOUND: u32 = u32::MAX;
 /// Marks a chain that starts from nothing instead of from a transform.
 pub(super) const NO_BASE: u32 = u32::MAX;
 
+impl Instruction {
+    /// Whether it makes scalars, of nothing but scalars.
+    pub(super) fn makes_scalars(&self) -> bool {
+        use Instruction::{Combine, Cone, Function, Hold};
+        matches!(self, Function { .. } | Combine { .. } | Hold { .. } | Cone { .. })
+    }
+}
+
 impl Step {
     /// Whether it keeps lengths and angles, given which transforms computed before do.
     pub(super) fn is_rigid(self, code: &Code, transform: impl Fn(u32) -> bool) -> bool {
@@ -38,16 +46,18 @@ pub(super) enum Step {
     Fixed(u32),
     /// A fixed translation.
     Shift(Vec3),
-    /// A turn about the frame's own first axis.
+    /// A turn about the frame's own first axis; the number is that of the turn in [`Code::turns`].
     TurnX(u32),
     /// A turn about the frame's own second axis.
     TurnY(u32),
     /// A turn about the frame's own third axis.
     TurnZ(u32),
     /// A turn about any axis.
-    Turn { axis: Vec3, angle: u32 },
+    Turn { axis: Vec3, turn: u32 },
     /// A slide along any axis.
     Slide { axis: Vec3, distance: u32 },
+    /// Slides along the frame's own three axes.
+    Move([u32; 3]),
     /// A rotation by four consecutive scalars x, y, z, w.
     Ball(u32),
     /// A scale by a factor.
@@ -112,8 +122,8 @@ pub(super) enum Instruction {
     Cone { cone: u32 },
     /// A bone put on an ellipsoid.
     Contact { contact: u32 },
-    /// `transforms[output] = transforms[base] · steps`.
-    Chain { base: u32, first: u32, end: u32, output: u32 },
+    /// `transforms[output] = transforms[base] · shift · steps`.
+    Chain { base: u32, shift: Vec3, first: u32, end: u32, output: u32 },
     /// The commonest chain of character skeletons: a shift and a ball.
     BallAt { base: u32, shift: Vec3, orientation: u32, output: u32 },
 }
@@ -154,7 +164,12 @@ pub(super) struct Code {
     pub scalars: usize,
     /// How many transform registers there are; the first hold the segments.
     pub transforms: usize,
+    /// Those that make scalars, then those that make transforms.
     pub instructions: Vec<Instruction>,
+    /// How many make scalars.
+    pub scalar_instructions: usize,
+    /// The register of each angle whose sine and cosine are wanted.
+    pub turns: Vec<u32>,
     pub steps: Vec<Step>,
     pub fixed: Vec<Affine>,
     pub functions: Vec<Function>,

@@ -95,12 +95,14 @@ impl Program {
         SizeMismatch::check("the Jacobian", self.plan.derivatives, jacobian.derivatives.len())?;
         self.load(requested, Mode::Open, pose)?;
         let plan = &self.plan;
-        // Scalar instructions stand before the chains that read them, but may follow other chains.
         let mut scalar_counts = plan.scalar_counts.iter();
         let mut scalar_terms = plan.scalar_terms.iter();
         let mut term_counts = plan.term_counts.iter();
         let mut terms = plan.terms.iter();
-        for instruction in &self.code.instructions {
+        for (number, instruction) in self.code.instructions.iter().enumerate() {
+            if number == self.code.scalar_instructions {
+                pose.take_turns(&self.code.turns);
+            }
             let (base, output) = match *instruction {
                 Instruction::Chain { base, output, .. } => (base, output),
                 Instruction::BallAt { base, output, .. } => (base, output),
@@ -141,9 +143,9 @@ impl Program {
                     }
                     end
                 }
-                Instruction::Chain { first, end, .. } => {
+                Instruction::Chain { shift, first, end, .. } => {
                     let steps = &self.code.steps[first as usize..end as usize];
-                    run_chain(&self.code, steps, from, &pose.scalars, &pose.transforms, &mut tape)
+                    run_chain(&self.code, steps, from.shifted(shift), pose, &mut tape)
                 }
                 Instruction::Contact { contact } => {
                     let call = &self.code.contacts[contact as usize];
@@ -215,13 +217,18 @@ impl Program {
                     pose.scalars[register as usize] = *value;
                 }
                 for term in terms {
-                    add(term, match (term.slope as usize).checked_sub(1) {
-                        None => 1.0,
-                        Some(k) => rows[k / 3].1[k % 3],
-                    });
+                    add(
+                        term,
+                        match (term.slope as usize).checked_sub(1) {
+                            None => 1.0,
+                            Some(k) => rows[k / 3].1[k % 3],
+                        },
+                    );
                 }
             }
-            Instruction::Contact { .. } | Instruction::Chain { .. } | Instruction::BallAt { .. } => {}
+            Instruction::Contact { .. }
+            | Instruction::Chain { .. }
+            | Instruction::BallAt { .. } => {}
         }
     }
 }

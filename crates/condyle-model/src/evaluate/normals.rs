@@ -39,7 +39,7 @@ impl Program {
                         std::array::from_fn(|i| pose.scalars[orientation as usize + i]);
                     normals[output as usize] = normals[base as usize] * Quat::from(q).to_mat3();
                 }
-                Instruction::Chain { base, first, end, output }
+                Instruction::Chain { base, first, end, output, .. }
                     if self.plan.deforming[output as usize] =>
                 {
                     let from =
@@ -64,12 +64,12 @@ impl Program {
     fn carrier(&self, step: Step, pose: &Pose, normals: &[Mat3]) -> Mat3 {
         let scalar = |register: u32| pose.scalars[register as usize];
         match step {
-            Step::Shift(_) | Step::Slide { .. } => Mat3::IDENTITY,
+            Step::Shift(_) | Step::Slide { .. } | Step::Move(_) => Mat3::IDENTITY,
             Step::Fixed(index) => self.code.fixed[index as usize].linear.inverse().transpose(),
-            Step::TurnX(angle) => Mat3::rotation_x(scalar(angle)),
-            Step::TurnY(angle) => Mat3::rotation_y(scalar(angle)),
-            Step::TurnZ(angle) => Mat3::rotation_z(scalar(angle)),
-            Step::Turn { axis, angle } => Mat3::rotation_about(axis, scalar(angle).sin_cos()),
+            Step::TurnX(turn) => Mat3::identity().rotated_x(pose.turn(turn)),
+            Step::TurnY(turn) => Mat3::identity().rotated_y(pose.turn(turn)),
+            Step::TurnZ(turn) => Mat3::identity().rotated_z(pose.turn(turn)),
+            Step::Turn { axis, turn } => Mat3::rotation_about(axis, pose.turn(turn)),
             Step::Ball(q) => Quat::from(std::array::from_fn(|i| scalar(q + i as u32))).to_mat3(),
             Step::Stretch { along, factor } => {
                 self.code.scales[along as usize].inverse(scalar(factor))

@@ -21,6 +21,10 @@ pub struct ContactReport<S = f64> {
 pub struct Pose<S = f64> {
     pub(super) scalars: Vec<S>,
     pub(super) transforms: Vec<Affine<S>>,
+    /// Angles that turn something, with their sines and cosines.
+    angles: Vec<S>,
+    sines: Vec<S>,
+    cosines: Vec<S>,
     segments: usize,
     stored: usize,
     rows: Vec<u32>,
@@ -34,6 +38,9 @@ impl<S: Scalar> Pose<S> {
         Self {
             scalars: vec![S::zero(); program.code.scalars],
             transforms: vec![Affine::identity(); program.code.transforms],
+            angles: vec![S::zero(); program.code.turns.len()],
+            sines: vec![S::zero(); program.code.turns.len()],
+            cosines: vec![S::one(); program.code.turns.len()],
             segments: program.segments,
             stored: program.stored,
             rows: program.code.rows.clone(),
@@ -44,7 +51,8 @@ impl<S: Scalar> Pose<S> {
 
     /// Bytes of the buffers: every scalar and transform, those that only components read included.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.scalars[..]) + size_of_val(&self.transforms[..])
+        let turns = 3 * size_of_val(&self.angles[..]);
+        size_of_val(&self.scalars[..]) + size_of_val(&self.transforms[..]) + turns
     }
 
     /// The world transform of a segment: `p_world = T · p_segment`.
@@ -57,6 +65,23 @@ impl<S: Scalar> Pose<S> {
     #[inline]
     pub fn frame(&self, segment: Option<SegmentId>) -> Affine<S> {
         self.transforms[segment.map_or(self.base, SegmentId::index)]
+    }
+
+    /// Takes sine and cosine of all angles at once, which lets several share one instruction.
+    pub(super) fn take_turns(&mut self, registers: &[u32]) {
+        for (angle, &register) in self.angles.iter_mut().zip(registers) {
+            *angle = self.scalars[register as usize];
+        }
+        let both = self.sines.iter_mut().zip(&mut self.cosines);
+        for ((sine, cosine), angle) in both.zip(&self.angles) {
+            (*sine, *cosine) = angle.sin_cos();
+        }
+    }
+
+    /// Sine and cosine of a turn.
+    #[inline(always)]
+    pub(super) fn turn(&self, number: u32) -> (S, S) {
+        (self.sines[number as usize], self.cosines[number as usize])
     }
 
     /// Puts the model's world somewhere else: into a scene, or into the space of a camera. Every

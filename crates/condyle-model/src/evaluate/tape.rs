@@ -155,9 +155,7 @@ impl Recorder<f64> for Tape<'_, '_> {
             inputs[i] = LawDual::variable(self.scalars[register as usize], i);
         }
         let moved = call.law.transform(&inputs[..call.inputs.len()]);
-        let part = |v: Vec3<LawDual>, f: &dyn Fn(LawDual) -> f64| {
-            Vec3::new(f(v.x), f(v.y), f(v.z))
-        };
+        let part = |v: Vec3<LawDual>, f: &dyn Fn(LawDual) -> f64| Vec3::new(f(v.x), f(v.y), f(v.z));
         let whole = |f: &dyn Fn(LawDual) -> f64| {
             let l = moved.linear;
             let linear = Mat3::from_columns(part(l.x, f), part(l.y, f), part(l.z, f));
@@ -175,7 +173,8 @@ impl Recorder<f64> for Tape<'_, '_> {
     }
 
     fn power(&mut self, register: u32, exponent: f64, rotation: Mat3, before: Affine) {
-        let turn = rotation.log();
+        let plain = exponent == 1.0 || exponent == -1.0;
+        let turn = if plain { Vec3::ZERO } else { rotation.log() };
         let raised = turn * exponent;
         for &(_, twist) in self.plan.segment_entries(register as usize) {
             let spin = self.twists[twist as usize].angular;

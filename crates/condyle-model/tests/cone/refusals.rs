@@ -62,6 +62,9 @@ fn what_is_no_cone_is_refused_with_its_points_and_a_remedy() {
     refuse(z, None, &hook, 0, hidden(1, 2, false), "from point 1 to point 2");
     let reversed: Vec<ConePoint> = hook.iter().rev().copied().collect();
     refuse(z, None, &reversed, 0, hidden(1, 2, false), "from point 1 to point 2");
+    // Along a meridian but for 0.01 degrees.
+    let steep = at(&[0.0, 120.0, 120.01, 240.0], &[1.0, 0.5, 1.0, 1.0]);
+    refuse(z, None, &steep, 0, hidden(1, 2, false), "does not see");
     // Points whose curve swings past the opposite of rest, though their arcs do not.
     let wide = at(&[0.0, 90.0, 95.0, 180.0, 270.0], &[0.2, 3.0, 3.1, 0.2, 0.2]);
     refuse(z, None, &wide, 2, hidden(1, 2, true), "after subdivision");

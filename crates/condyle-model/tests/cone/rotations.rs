@@ -3,7 +3,7 @@
 use crate::shapes::{Random, SCALE, angle, around, edges, make, polar, shapes, twisted};
 use condyle_math::{Mat3, Quat, SwingTwist, Vec3};
 use condyle_model::{Cone, ConePoint, Projection};
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Central difference of several numbers along a rotation vector of the parent's frame.
 fn difference<const N: usize>(
@@ -160,23 +160,45 @@ fn legal_rotations_are_kept_and_others_become_legal_at_once() {
 }
 
 #[test]
-fn a_twist_is_held_on_the_very_boundary_too() {
+fn on_and_over_edges_and_corners_an_answer_is_final_too() {
     for (name, rest, points, subdivisions) in shapes() {
-        let cone = twisted(rest, &points, subdivisions, Projection::Nearest);
-        for [p, q] in edges(&cone) {
-            for v in [p, (p + q).normalized(), (p * 3.0 + q).normalized()] {
-                let swing = Quat::from_axis_angle(rest.cross(v).normalized(), angle(rest, v));
-                for turn in [-2.0, 1.0, 2.0, 3.0] {
-                    let rotation = (swing * Quat::from_axis_angle(rest, turn)).to_mat3();
-                    let legal = cone.legal(rotation);
-                    let rows = cone.rows(legal.rotation);
-                    assert!(rows.iter().all(|row| row.0 >= -1e-9), "{name} {rows:?}");
-                    let again = cone.legal(legal.rotation);
-                    assert!(!again.moved && again.rotation == legal.rotation, "{name} {turn}");
-                    assert!(angle(legal.rotation * rest, v) < 1e-12, "{name} {turn}");
+        for projection in [Projection::Nearest, Projection::TowardRest] {
+            let cone = twisted(rest, &points, subdivisions, projection);
+            for [p, q] in edges(&cone) {
+                for v in [p, (p + q).normalized(), (p * 3.0 + q).normalized()] {
+                    for (turn, beyond) in [(-2.0, 1.0), (2.0, 1.0), (3.0, 1.0), (0.0, 1.02)] {
+                        let swing = angle(rest, v) * beyond;
+                        let swing = Quat::from_axis_angle(rest.cross(v).normalized(), swing);
+                        let rotation = (swing * Quat::from_axis_angle(rest, turn)).to_mat3();
+                        let legal = cone.legal(rotation);
+                        assert!(legal.moved, "{name}");
+                        let rows = cone.rows(legal.rotation);
+                        assert!(rows.iter().all(|row| row.0 >= -1e-9), "{name} {rows:?}");
+                        let again = cone.legal(legal.rotation);
+                        assert!(!again.moved && again.rotation == legal.rotation, "{name}");
+                        // The way in to a depth of 1e-14, seen at 1e-3 or more, in steps of four.
+                        let off = angle(legal.rotation * rest, v);
+                        let same = beyond == 1.0 || projection == Projection::TowardRest;
+                        assert!(!same || off < 4e-11, "{name} {off}");
+                    }
                 }
             }
         }
+    }
+}
+
+#[test]
+fn the_margin_of_a_twist_is_twice_the_angle_to_where_the_bounds_are_equally_far() {
+    let rest = Vec3::new(0.6, 0.0, -0.8);
+    let cone = twisted(rest, &around(rest, &[1.0; 6]), 1, Projection::Nearest);
+    // Opposite to the middle of [-0.9, 0.6].
+    let opposite = PI - 0.15;
+    for (off, bound) in [(-0.01, 0.6), (0.01, -0.9), (-0.5, 0.6), (0.5, -0.9)] {
+        let turned = Mat3::rotation_about(rest, (f64::sin(opposite + off), (opposite + off).cos()));
+        let legal = cone.legal(turned);
+        let twist = SwingTwist::of(Quat::from_mat3(legal.rotation), rest).twist_angle(rest);
+        assert!((twist - bound).abs() < 1e-14 && angle(legal.rotation * rest, rest) < 1e-14);
+        assert!((legal.margin - 2.0 * f64::abs(off)).abs() < 1e-14);
     }
 }
 

@@ -52,11 +52,11 @@ pub(crate) fn around(rest: Vec3, angles: &[f64]) -> Vec<Vec3> {
     angles.iter().enumerate().map(|(i, &angle)| polar(rest, azimuth(i), angle)).collect()
 }
 
-/// Teeth with one edge that rest sees at an angle of a few arc seconds.
+/// Teeth with one edge nearly along a meridian: rest sees it at 0.08 degrees.
 fn saw(rest: Vec3) -> Vec<Vec3> {
     let tooth = |i: u32| {
         let azimuth = 0.3 + f64::from(i) * 0.25 * TAU;
-        [polar(rest, azimuth, 0.5), polar(rest, azimuth + 1e-5, 1.2)]
+        [polar(rest, azimuth, 0.5), polar(rest, azimuth + 2e-3, 1.2)]
     };
     (0..4).flat_map(tooth).collect()
 }

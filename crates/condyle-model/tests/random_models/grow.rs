@@ -289,7 +289,9 @@ fn grow_component(
         8 => {
             let (angle, axis) = (any(dice), dice.axis());
             let centre = if dice.below(2) == 0 {
-                Centre::Intervals([-0.45, 0.35, 0.8].map(|to| (to, dice.vector(0.1))).to_vec())
+                let ends = [-0.45, 0.35, 0.8];
+                let ends = &ends[..[1, 3][dice.below(2)]];
+                Centre::Intervals(ends.iter().map(|&to| (to, dice.vector(0.1))).collect())
             } else {
                 let x = vec![-0.9, -0.1, 0.6, 1.0];
                 Centre::Path(Box::new([0; 3].map(|_| {

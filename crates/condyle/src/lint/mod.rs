@@ -220,7 +220,7 @@ fn tolerance(kind: CoordinateKind) -> f64 {
     match kind {
         CoordinateKind::Rotation | CoordinateKind::Orientation => 0.01f64.to_radians(),
         CoordinateKind::Translation => 1e-5,
-        CoordinateKind::Other => 1e-4,
+        CoordinateKind::Scale | CoordinateKind::Other => 1e-4,
     }
 }
 
@@ -232,7 +232,7 @@ fn amount(kind: CoordinateKind, value: f64) -> String {
         }
         CoordinateKind::Translation if value.abs() >= 1.0 => format!("{} m", rounded(value, 3)),
         CoordinateKind::Translation => format!("{} mm", rounded(1e3 * value, 2)),
-        CoordinateKind::Other => rounded(value, 4),
+        CoordinateKind::Scale | CoordinateKind::Other => rounded(value, 4),
     }
 }
 

@@ -5,7 +5,7 @@
 //! and with one leader it is known which of its values does it.
 
 use super::real_range;
-use condyle_model::component::{Component, Source};
+use condyle_model::component::{Component, Source, Swinging};
 use condyle_model::{CoordinateId, CoordinateKind, Model};
 use std::cell::Cell;
 use std::collections::HashMap;
@@ -150,6 +150,15 @@ impl<'m> Reach<'m> {
                             let inputs: Vec<f64> = combine.inputs.iter().map(|&s| of(s)).collect();
                             combine.function.apply(&inputs)
                         }
+                        // In open mode a cone passes its angles: each of these is taken.
+                        Component::Cone(cone) => {
+                            let angles: &[Source] = match &cone.of {
+                                Swinging::Angles(angles, _) => angles,
+                                Swinging::Directions(angles, _) => angles,
+                                Swinging::Orientation(_) => &[],
+                            };
+                            angles.get(output as usize).map_or(f64::NAN, |&angle| of(angle))
+                        }
                         _ => f64::NAN,
                     }
                 }
@@ -229,4 +238,49 @@ fn corner_or_inside(index: usize, which: usize) -> f64 {
     }
     let step = (2.0 + 3.0 * which as f64).sqrt();
     (index as f64 * step).fract()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use condyle_math::Vec3;
+    use condyle_model::component::JointCone;
+    use condyle_model::limit::{Cone, ConePoint, Projection};
+    use condyle_model::{ModelBuilder, Range};
+
+    #[test]
+    fn a_cone_takes_what_its_angles_take() {
+        let mut b = ModelBuilder::new("hip");
+        let set = b.joint_set("hip");
+        let bounds = [[-0.3, 1.9], [-0.5, 0.4], [-0.6, 0.7]];
+        let angles: Vec<CoordinateId> = bounds
+            .iter()
+            .enumerate()
+            .map(|(i, [low, high])| {
+                let id = b.coordinate(set, &format!("angle_{i}"), CoordinateKind::Rotation);
+                b.coordinate_mut(id).range = Range::new(*low, *high);
+                id
+            })
+            .collect();
+        let corner = |x: f64, z: f64| ConePoint { direction: Vec3::new(x, -1.0, z), twist: None };
+        let corners = vec![corner(0.2, 0.2), corner(-0.2, 0.2), corner(0.0, -0.2)];
+        let cone = Cone::new(-Vec3::Y, None, corners, 0, Projection::Nearest).unwrap();
+        let sources = [angles[0].into(), angles[1].into(), angles[2].into()];
+        let of = Swinging::Angles(sources, [Vec3::Z, Vec3::X, Vec3::Y]);
+        let held = b.component(set, "held", Component::Cone(JointCone { of, cone }));
+        let Source::Output(id, _) = held else { panic!("a component has outputs") };
+        for output in 0..3 {
+            b.rotate(set, "turn", Source::Output(id, output), Vec3::X);
+        }
+        let model = b.build().unwrap();
+        let reach = Reach::new(&model);
+        for (output, [low, high]) in bounds.into_iter().enumerate() {
+            // The cone is narrower than the ranges, which tracking does not know.
+            let taken = reach.taken(Source::Output(id, output as u32)).unwrap();
+            let [least, greatest] = taken.extremes().unwrap();
+            let off = (least.1 - low).abs().max((greatest.1 - high).abs());
+            assert!(off < 1e-15, "angle {output}: {off}");
+            assert_eq!(taken.leaders, angles);
+        }
+    }
 }

@@ -33,7 +33,8 @@ pub(super) fn distance(point: Vec3, radii: Vec3) -> Distance {
     let r = radii.to_array().map(|r| r * size);
     let p = point.to_array().map(|p| p.abs() * size);
     let far = Distance { signed: f64::INFINITY, normal: Vec3::Z };
-    if !(r.iter().chain(&p).sum::<f64>() < 1e150) {
+    let sum = r.iter().chain(&p).sum::<f64>();
+    if sum.is_nan() || sum > 1e150 {
         return far;
     }
     // r² - r_min², and r·p
@@ -57,7 +58,7 @@ pub(super) fn distance(point: Vec3, radii: Vec3) -> Distance {
             }
             let next = s + value / slope;
             // Rounding ends the climb; a slope of 0 is not met, as one term is 1.
-            if !(next > s * (1.0 + 1e-15)) {
+            if next.is_nan() || next <= s * (1.0 + 1e-15) {
                 break;
             }
             s = next;

@@ -26,6 +26,8 @@
 //! equally near; [`Glide::next`] tells how close that is.
 
 mod closest;
+mod extrema;
+mod lines;
 mod pairs;
 mod quartic;
 
@@ -154,9 +156,8 @@ impl Gliding {
                 && pair.at.iter().all(|x| x.is_finite())
         };
         let pose = ellipsoid_in_surface.to_rows();
-        if !(pose.iter().all(|x| x.is_finite()) && radii.is_finite() && axis.is_finite())
-            || !pairs.iter().all(whole)
-        {
+        let finite = pose.iter().all(|x| x.is_finite()) && radii.is_finite() && axis.is_finite();
+        if !finite || !pairs.iter().all(whole) {
             return Err(ContactError::NotFinite);
         }
         if !radii.to_array().iter().all(|&r| r > 0.0) {
@@ -246,7 +247,7 @@ impl Gliding {
         let about_first = Mat3::rotation_about(axis, (theta.sin, theta.cos));
         let turned = Affine::new(scaled.linear * about_first, scaled.translation);
         let square = first.norm_squared();
-        if !(square.value() > LEAST_ARM * LEAST_ARM) {
+        if square.value() < LEAST_ARM * LEAST_ARM {
             let gap = self.gap(turned * second);
             return Glide {
                 rotation: about_first,

@@ -95,7 +95,7 @@ impl Places {
             let mut weight = S::one();
             for j in 0..self.count {
                 if j != k {
-                    weight = weight * square[j];
+                    weight *= square[j];
                 }
             }
             weights[k] = weight;

@@ -1,30 +1,15 @@
 //! Where a point that turns about an axis meets an ellipsoid.
 //!
 //! A point on a circle, c + u·cos θ + w·sin θ, divided by the half axes component by component,
-//! gives C + U·cos θ + W·sin θ, and it lies on the ellipsoid where
+//! gives M + U·cos θ + W·sin θ, and it lies on the ellipsoid where
 //!
 //! ```text
-//! f(θ) = |C + U·cos θ + W·sin θ|² - 1 = A + B·cos θ + C·sin θ + D·cos 2θ + E·sin 2θ = 0
+//! f(θ) = |M + U·cos θ + W·sin θ|² - 1 = A + B·cos θ + C·sin θ + D·cos 2θ + E·sin 2θ = 0
 //! ```
 //!
-//! With x = cos θ and y = sin θ that is a circle that meets a conic, in 0, 2 or 4 points. Turn the
-//! circle until E = 0, divide by the amplitude of the second harmonic, and add μ·(x² + y² - 1):
-//!
-//! ```text
-//! (1 + μ)·x² - (1 - μ)·y² + 2β·x + 2γ·y + α - μ
-//! ```
-//!
-//! is a pair of lines where h(μ) = (α - μ)(μ² - 1) - β²(μ - 1) - γ²(μ + 1) = 0. As h(-1) = 2β² and
-//! h(1) = -2γ², a root lies in [-1, 1], where both lines are real; from one of the two ends h falls
-//! and bends so that Newton's steps cannot pass it. Each line then meets the circle in 2 points or
-//! none. This is the factorisation of the quartic in tan θ/2 without the half angle, so no θ is
-//! special.
-//!
-//! The answer is used where it is beyond doubt: the lines multiply to f, no line comes near to
-//! touching the circle, and f is steep at every root. Everywhere else the quartic is taken about an
-//! angle where |f| is large, and its roots are enclosed between its extrema, those between the
-//! inflections, so that every change of sign is found. A pair of roots can be missed only where f
-//! passes 0 by no more than its rounding error.
+//! at 0, 2 or 4 angles. A pair of lines gives them where it is beyond doubt (`lines.rs`); everywhere
+//! else they are enclosed between the extrema of f (`extrema.rs`), so that every change of sign is
+//! found. A pair of roots can be missed only where f passes 0 by no more than its rounding error.
 
 use condyle_math::{Scalar, Vec3};
 
@@ -49,10 +34,10 @@ pub(super) struct Turns {
 }
 
 impl Turns {
-    const NONE: Self = Self { list: [(1.0, 0.0); 4], count: 0 };
+    pub(super) const NONE: Self = Self { list: [(1.0, 0.0); 4], count: 0 };
 
     #[inline(always)]
-    fn push(&mut self, turn: Turn) {
+    pub(super) fn push(&mut self, turn: Turn) {
         if self.count < 4 {
             self.list[self.count] = turn;
             self.count += 1;
@@ -64,16 +49,6 @@ impl Turns {
         &self.list[..self.count]
     }
 }
-
-/// How near to touching the circle a line, or how flat f at a root, puts the fast way in doubt.
-const TOUCH: f64 = 1e-5;
-const FLAT: f64 = 1e-4;
-
-/// Below this, what divides a coefficient of the lines is too inexact, and a root is taken instead.
-const SHALLOW: f64 = 0.1;
-
-/// Below this part of the first harmonic the second is a small disturbance of it.
-const NEARLY_FIRST: f64 = 1e-3;
 
 impl<S: Scalar> Quartic<S> {
     /// f for the circle with this centre and these half axes, all divided by the ellipsoid's radii.
@@ -165,243 +140,11 @@ impl Quartic {
         }
         best
     }
-
-    /// f at the angle θ + φ as a function of θ.
-    #[inline(always)]
-    fn turned(&self, (c, s): Turn) -> Self {
-        let (cc, ss) = (c * c - s * s, 2.0 * c * s);
-        Self {
-            constant: self.constant,
-            cos: self.cos * c + self.sin * s,
-            sin: self.sin * c - self.cos * s,
-            cos2: self.cos2 * cc + self.sin2 * ss,
-            sin2: self.sin2 * cc - self.cos2 * ss,
-        }
-    }
-
-    /// The roots by the pair of lines, where they are beyond doubt.
-    #[inline]
-    fn by_lines(&self) -> Option<Turns> {
-        let first = self.cos * self.cos + self.sin * self.sin;
-        let second = self.cos2 * self.cos2 + self.sin2 * self.sin2;
-        if second <= NEARLY_FIRST * NEARLY_FIRST * first {
-            return self.by_one_line(first.sqrt(), second.sqrt());
-        }
-        let second = second.sqrt();
-        // Half the angle of (cos2, sin2): the turn that leaves no sin 2θ.
-        let scale = 1.0 / second;
-        let double = self.cos2 * scale;
-        let large = (0.5 + 0.5 * double.abs()).sqrt();
-        let small = 0.5 * self.sin2 * scale / large;
-        let turn = if double >= 0.0 {
-            (large, small)
-        } else {
-            (small.abs(), if self.sin2 < 0.0 { -large } else { large })
-        };
-        let alpha = self.constant * scale;
-        let beta = 0.5 * scale * (self.cos * turn.0 + self.sin * turn.1);
-        let gamma = 0.5 * scale * (self.sin * turn.0 - self.cos * turn.1);
-        let mu = degenerate(alpha, beta, gamma)?;
-
-        // (p·x - q·y - m1)(p·x + q·y - m2), m = middle ∓ half.
-        let (p, q) = ((1.0 + mu).max(0.0).sqrt(), (1.0 - mu).max(0.0).sqrt());
-        let rest = alpha - mu;
-        let (middle, half) = if p > SHALLOW && q > SHALLOW {
-            (-beta / p, gamma / q)
-        } else if p < q {
-            let half = gamma / q;
-            ((half * half + rest).max(0.0).sqrt().copysign(-beta), half)
-        } else {
-            let middle = -beta / p;
-            (middle, (middle * middle - rest).max(0.0).sqrt().copysign(gamma))
-        };
-        let off = (p * middle + beta).abs()
-            + (q * half - gamma).abs()
-            + (middle * middle - half * half - rest).abs();
-        let size = 1.0 + alpha.abs() + beta.abs() + gamma.abs();
-        // Also where something was not finite.
-        if !(off <= 1e-12 * size) {
-            return None;
-        }
-        let steep = FLAT * self.scale();
-        let root_half = std::f64::consts::FRAC_1_SQRT_2;
-        let mut turns = Turns::NONE;
-        for (nx, ny, m) in [(p, -q, middle - half), (p, q, middle + half)] {
-            let (nx, ny, k) = (nx * root_half, ny * root_half, m * root_half);
-            let square = 1.0 - k * k;
-            if square.abs() < TOUCH {
-                return None;
-            }
-            if square > 0.0 {
-                let reach = square.sqrt();
-                for reach in [reach, -reach] {
-                    let (x, y) = (nx * k - ny * reach, ny * k + nx * reach);
-                    let root = (x * turn.0 - y * turn.1, x * turn.1 + y * turn.0);
-                    if self.slope().at(root).abs() < steep {
-                        return None;
-                    }
-                    turns.push(root);
-                }
-            }
-        }
-        Some(turns)
-    }
-
-    /// The roots where the second harmonic hardly counts, as on a sphere, and the line is one.
-    fn by_one_line(&self, first: f64, second: f64) -> Option<Turns> {
-        let k = -self.constant / first;
-        let slack = second / first;
-        if k.abs() > 1.0 + slack + 1e-9 {
-            return Some(Turns::NONE);
-        }
-        // Where the first harmonic is flat enough for the second to matter, f is still above it.
-        if k.abs() > 1.0 - 8.0 * slack - TOUCH {
-            return None;
-        }
-        let (nx, ny) = (self.cos / first, self.sin / first);
-        let reach = (1.0 - k * k).sqrt();
-        let mut turns = Turns::NONE;
-        for reach in [reach, -reach] {
-            let mut turn = (nx * k - ny * reach, ny * k + nx * reach);
-            for _ in 0..4 {
-                turn = stepped(turn, -self.at(turn) / self.slope().at(turn));
-            }
-            turns.push(turn);
-        }
-        Some(turns)
-    }
-
-    /// The roots by enclosing: sure, and slower.
-    #[cold]
-    fn by_extrema(&self) -> Turns {
-        // Five equal angles determine f, so that it cannot be small at all of these.
-        let mut far = (1.0, 0.0);
-        for turn in EIGHTHS {
-            if self.at(turn).abs() > self.at(far).abs() {
-                far = turn;
-            }
-        }
-        let back = (-far.0, -far.1);
-        let g = self.turned(back);
-        // g·(1 + t²)² with t = tan θ/2; t is infinite at the far angle.
-        let quartic = [
-            g.constant + g.cos + g.cos2,
-            2.0 * g.sin + 4.0 * g.sin2,
-            2.0 * g.constant - 6.0 * g.cos2,
-            2.0 * g.sin - 4.0 * g.sin2,
-            g.constant - g.cos + g.cos2,
-        ];
-        let mut turns = Turns::NONE;
-        for &t in real_roots(quartic).iter().flatten() {
-            let r = 1.0 / (1.0 + t * t);
-            let (x, y) = ((1.0 - t * t) * r, 2.0 * t * r);
-            turns.push((x * back.0 - y * back.1, x * back.1 + y * back.0));
-        }
-        turns
-    }
-}
-
-const EIGHTHS: [Turn; 8] = {
-    const R: f64 = std::f64::consts::FRAC_1_SQRT_2;
-    [(1.0, 0.0), (R, R), (0.0, 1.0), (-R, R), (-1.0, 0.0), (-R, -R), (0.0, -1.0), (R, -R)]
-};
-
-/// The turn by a small angle more.
-#[inline(always)]
-fn stepped((c, s): Turn, step: f64) -> Turn {
-    let (x, y) = (c - s * step, s + c * step);
-    let r = 1.0 / (x * x + y * y).sqrt();
-    (x * r, y * r)
-}
-
-/// A root in [-1, 1] of h(μ) = (α - μ)(μ² - 1) - β²(μ - 1) - γ²(μ + 1).
-///
-/// At 1, h is not above 0; where it falls and bends down there, Newton's steps approach the largest
-/// root from above. At -1 it is the other way round. One of the two always holds: the first for
-/// α ≤ 1, the second for α ≥ -1. Where both do, the choice is the root that stands alone.
-#[inline(always)]
-fn degenerate(alpha: f64, beta: f64, gamma: f64) -> Option<f64> {
-    let (bb, cc) = (beta * beta, gamma * gamma);
-    // h = -μ³ + α·μ² + k1·μ + k0
-    let (k1, k0) = (1.0 - bb - cc, bb - cc - alpha);
-    let inflection = alpha * (1.0 / 3.0);
-    let there = ((alpha - inflection) * inflection + k1) * inflection + k0;
-    let from_above = if alpha > 1.0 {
-        false
-    } else if alpha < -1.0 {
-        true
-    } else {
-        there > 0.0
-    };
-    let mut mu = if from_above { 1.0 } else { -1.0 };
-    for _ in 0..40 {
-        let h = ((alpha - mu) * mu + k1) * mu + k0;
-        let slope = (2.0 * alpha - 3.0 * mu) * mu + k1;
-        let step = h / slope;
-        if !(step.abs() > 1e-9) {
-            return (step.abs() <= 1e-9).then_some((mu - step).clamp(-1.0, 1.0));
-        }
-        mu -= step;
-    }
-    None
-}
-
-/// The real roots of a polynomial of degree 4, lowest coefficient first, whose last is not small.
-fn real_roots(k: [f64; 5]) -> [Option<f64>; 4] {
-    let largest = k[..4].iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-    let bound = 1.0 + largest / k[4].abs();
-    let third = [k[1], 2.0 * k[2], 3.0 * k[3], 4.0 * k[4], 0.0];
-    let second = [2.0 * k[2], 6.0 * k[3], 12.0 * k[4], 0.0, 0.0];
-    let first = [6.0 * k[3], 24.0 * k[4], 0.0, 0.0, 0.0];
-    let mut stops = [None; 4];
-    for polynomial in [first, second, third, k] {
-        stops = between(&polynomial, &stops, bound);
-    }
-    stops
-}
-
-/// One root between each two neighbouring stops where the polynomial changes sign.
-fn between(k: &[f64; 5], stops: &[Option<f64>; 4], bound: f64) -> [Option<f64>; 4] {
-    let value = |t: f64| (((k[4] * t + k[3]) * t + k[2]) * t + k[1]) * t + k[0];
-    let mut found = [None; 4];
-    let mut count = 0;
-    let mut low = -bound;
-    let mut at_low = value(low);
-    for high in stops.iter().copied().flatten().chain([bound]) {
-        let at_high = value(high);
-        if (at_low < 0.0) != (at_high < 0.0) && count < 4 {
-            found[count] = Some(enclosed(k, (low, at_low), high));
-            count += 1;
-        }
-        (low, at_low) = (high, at_high);
-    }
-    found
-}
-
-/// The root between two places with different signs: Newton's steps, halving where they lead out.
-fn enclosed(k: &[f64; 5], (mut low, at_low): (f64, f64), mut high: f64) -> f64 {
-    let rising = at_low < 0.0;
-    let mut t = 0.5 * (low + high);
-    for _ in 0..120 {
-        let value = (((k[4] * t + k[3]) * t + k[2]) * t + k[1]) * t + k[0];
-        let slope = ((4.0 * k[4] * t + 3.0 * k[3]) * t + 2.0 * k[2]) * t + k[1];
-        if (value < 0.0) == rising {
-            low = t;
-        } else {
-            high = t;
-        }
-        let newton = t - value / slope;
-        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-        if (next - t).abs() <= 1e-16 * (1.0 + t.abs()) || next == low || next == high {
-            return next;
-        }
-        t = next;
-    }
-    t
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::lines::stepped;
     use super::*;
     use std::f64::consts::TAU;
 

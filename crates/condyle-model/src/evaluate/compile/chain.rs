@@ -6,6 +6,20 @@ use crate::component::{Compensate, Component, Contact, Source, shear};
 use crate::model::{ComponentId, SegmentId};
 use condyle_math::{Affine, Mat3, Vec3};
 
+/// Makes one step of three slides along x, y and z.
+fn merge_slides(steps: &mut Vec<Step>) {
+    let Some(last) = steps.last_chunk::<3>() else { return };
+    let slide = |step: Step, along: Vec3| match step {
+        Step::Slide { axis, distance } if axis == along => Some(distance),
+        _ => None,
+    };
+    let [x, y, z] = *last;
+    if let (Some(x), Some(y), Some(z)) = (slide(x, Vec3::X), slide(y, Vec3::Y), slide(z, Vec3::Z)) {
+        steps.truncate(steps.len() - 3);
+        steps.push(Step::Move([x, y, z]));
+    }
+}
+
 impl Compiler<'_> {
     /// The rotations from the topmost compensated ancestor's parent to the segment's: as they are,
     /// and with what is compensated taken away.
@@ -95,7 +109,10 @@ impl Compiler<'_> {
                         let turn = Mat3::rotation_about(rotate.axis, angle.sin_cos());
                         self.fixed(Affine::from_rotation(turn), steps);
                     }
-                    Scalar::Register(angle) => steps.push(turn(rotate.axis, angle)),
+                    Scalar::Register(angle) => {
+                        let turn = self.turn(rotate.axis, angle);
+                        steps.push(turn);
+                    }
                 },
                 Component::Translate(translate) => match self.scalar(translate.distance) {
                     Scalar::Constant(distance) => {
@@ -103,6 +120,7 @@ impl Compiler<'_> {
                     }
                     Scalar::Register(distance) => {
                         steps.push(Step::Slide { axis: translate.axis, distance });
+                        merge_slides(steps);
                     }
                 },
                 Component::Ball(ball) => {
@@ -111,6 +129,15 @@ impl Compiler<'_> {
                     steps.push(Step::Ball(register));
                 }
                 Component::Pivot(law) => {
+                    let angle = self.scalar(law.angle);
+                    if let (Some(centre), Scalar::Register(angle)) = (law.fixed_centre(), angle) {
+                        // One centre: a plain turn between two shifts.
+                        self.fixed(Affine::from_translation(centre), steps);
+                        let turn = self.turn(law.axis(), angle);
+                        steps.push(turn);
+                        self.fixed(Affine::from_translation(-centre), steps);
+                        continue;
+                    }
                     self.law(AnyLaw::Pivot(law.clone()), &[law.angle], steps);
                 }
                 Component::Ellipsoid(law) => {
@@ -223,25 +250,34 @@ impl Compiler<'_> {
                 Instruction::BallAt { base, shift, orientation, output }
             }
             _ => {
+                let (shift, steps) = match steps[..] {
+                    [Step::Shift(shift), ref rest @ ..] => (shift, rest),
+                    ref all => (Vec3::ZERO, all),
+                };
                 let first = self.program.code.steps.len() as u32;
                 self.program.code.steps.extend(steps);
                 let end = self.program.code.steps.len() as u32;
-                Instruction::Chain { base, first, end, output }
+                Instruction::Chain { base, shift, first, end, output }
             }
         };
         self.program.code.instructions.push(instruction);
     }
-}
 
-/// The step that turns about an axis of length 1.
-fn turn(axis: Vec3, angle: u32) -> Step {
-    if axis == Vec3::X {
-        Step::TurnX(angle)
-    } else if axis == Vec3::Y {
-        Step::TurnY(angle)
-    } else if axis == Vec3::Z {
-        Step::TurnZ(angle)
-    } else {
-        Step::Turn { axis, angle }
+    /// The step that turns about an axis of length 1; turns by one angle share its sine and cosine.
+    fn turn(&mut self, axis: Vec3, angle: u32) -> Step {
+        let turns = &mut self.program.code.turns;
+        let turn = turns.iter().position(|&known| known == angle).unwrap_or_else(|| {
+            turns.push(angle);
+            turns.len() - 1
+        }) as u32;
+        if axis == Vec3::X {
+            Step::TurnX(turn)
+        } else if axis == Vec3::Y {
+            Step::TurnY(turn)
+        } else if axis == Vec3::Z {
+            Step::TurnZ(turn)
+        } else {
+            Step::Turn { axis, turn }
+        }
     }
 }

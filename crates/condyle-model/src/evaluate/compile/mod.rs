@@ -4,7 +4,7 @@ mod chain;
 mod scalar;
 
 use super::derivative_plan::{DerivativePlan, plan};
-use super::instruction::Code;
+use super::instruction::{Code, Instruction};
 use super::program::Program;
 use crate::component::{Component, Source, Swinging};
 use crate::model::{ComponentId, CoordinateId, CoordinateKind, Model, Node, dependency_order};
@@ -61,6 +61,8 @@ fn compile(model: &Model) -> Program {
                 scalars: model.stored_len(),
                 transforms: model.segments.len() + 1,
                 instructions: vec![],
+                scalar_instructions: 0,
+                turns: vec![],
                 steps: vec![],
                 fixed: vec![],
                 functions: vec![],
@@ -97,6 +99,10 @@ fn compile(model: &Model) -> Program {
     for segment in model.parents_first() {
         compiler.segment(segment);
     }
+    // Scalars are made of scalars alone, so all of them can come first.
+    let code = &mut compiler.program.code;
+    code.instructions.sort_by_key(|instruction| !instruction.makes_scalars());
+    code.scalar_instructions = code.instructions.partition_point(Instruction::makes_scalars);
     let directions: Vec<(u32, u32)> = model
         .coordinate_ids()
         .filter(|&id| model.coordinate(id).follows.is_none())
@@ -201,4 +207,3 @@ impl Compiler<'_> {
         }
     }
 }
-

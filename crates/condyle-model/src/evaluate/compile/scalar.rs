@@ -57,7 +57,12 @@ impl Compiler<'_> {
         }
     }
 
-    pub(super) fn function(&mut self, function: condyle_math::function::Function, input: u32, output: u32) {
+    pub(super) fn function(
+        &mut self,
+        function: condyle_math::function::Function,
+        input: u32,
+        output: u32,
+    ) {
         self.program.code.functions.push(function);
         let function = self.program.code.functions.len() as u32 - 1;
         self.program.code.instructions.push(Instruction::Function { function, input, output });

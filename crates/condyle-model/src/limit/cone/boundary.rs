@@ -204,6 +204,11 @@ impl Boundary {
         self.settle(nearest.point, nearest.inward)
     }
 
+    /// A direction inside, moved deeper where it is nearly outside.
+    pub(super) fn settle_inside(&self, v: Vec3) -> Vec3 {
+        self.settle(v, self.edges[self.wedge(v)].normal)
+    }
+
     /// A direction at the boundary or inside, moved inside by rounding's worth if it is not.
     ///
     /// Tries the inward direction, then toward rest, which leads inside from every point.

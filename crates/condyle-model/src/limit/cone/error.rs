@@ -63,6 +63,8 @@ pub enum ConeError {
     /// The rest direction is not strictly inside.
     RestOutside,
     /// The rest direction does not see the whole edge between two points.
+    ///
+    /// An edge seen at less than 0.06 degrees, one along a meridian, counts as not seen.
     Hidden {
         /// Where the edge starts.
         from: usize,

@@ -11,8 +11,8 @@
 //! legal: g ≥ 0        dg₁/dω = v × ∇d        dg₂/dω = (v + r)/(1 + v·r) - v × ∇lower
 //! ```
 //!
-//! for Ṙ = \[ω\]× R. The polygon may be concave and larger than a hemisphere; r sees all of it, and
-//! -r is always outside. Its corners are control points, refined by an interpolating scheme
+//! for Ṙ = \[ω\]× R. The polygon may be concave and larger than a hemisphere; r sees all of it
+//! (no edge runs along a meridian), and -r is always outside. Its corners are control points, refined by an interpolating scheme
 //! (`outline.rs`); `boundary.rs` and `twist.rs` hold the geometry and say where it has kinks. The
 //! distance has kinks where two points of the boundary are equally near.
 //!
@@ -96,8 +96,15 @@ pub struct Legal {
 
 /// The limit of a ball joint: a spherical polygon of directions with bounds of twist.
 ///
-/// The file's head has the formulas. A direction or a rotation that says nothing (zero, or not
-/// finite) breaks no limit: it is inside, at an infinite distance, and is returned unchanged.
+/// A rotation R (the bone's frame in the joint's) takes the long axis at rest r to the direction
+/// v = R·r, and R = swing · twist with the shortest swing from r to v and a turn by τ about r. Legal
+/// is a v inside the polygon, which may be concave and larger than a hemisphere, with
+/// lower(v) ≤ τ ≤ upper(v). The polygon goes through all points given; bounds at rest b₀ and on the
+/// boundary b₁ are joined along each meridian by (1 - s)·b₀ + s·b₁, s = ρ²·(3 - 2ρ), with ρ the
+/// fraction of the way. After Shao & Ng-Thow-Hing 2003, section 4.6.
+///
+/// A direction or a rotation that says nothing (zero, or not finite) breaks no limit: it is inside,
+/// at an infinite distance, and is returned unchanged.
 ///
 /// ```
 /// use condyle_math::{Mat3, Vec3};
@@ -282,7 +289,7 @@ impl Cone {
             if outside {
                 if inside {
                     // The new matrix rounds, which must not put the direction outside.
-                    direction = self.boundary.settle(v, rest);
+                    direction = self.boundary.settle_inside(v);
                     at = bounds.at(&self.boundary, direction).0;
                 }
                 twist = if standing.above_lower < 0.0 { at[0] } else { at[1] };

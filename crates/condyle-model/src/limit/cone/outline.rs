@@ -17,10 +17,15 @@ use super::{Cone, ConeError, ConePoint};
 use condyle_math::Vec3;
 use std::f64::consts::{PI, TAU};
 
-/// The shortest edge, and the least sine of the angle at which the rest direction sees an edge.
+/// The shortest edge, and how near a point may come to rest or to its opposite.
 ///
 /// Far above rounding, far below what anybody measures: 0.2 arc seconds.
 const LEAST: f64 = 1e-6;
+/// The least sine of the angle at which the rest direction sees an edge, 0.06 degrees.
+///
+/// On an edge that runs along a meridian the crossing of the meridian, and with it every bound of
+/// twist, changes abruptly with the azimuth.
+const SEEN: f64 = 1e-3;
 
 /// A point of the outline: its direction, of length 1, and its bounds of twist.
 #[derive(Clone, Copy)]
@@ -152,8 +157,8 @@ fn check_visible(rest: Vec3, line: &[OutlinePoint]) -> Result<(), Option<usize>>
     for (i, point) in line.iter().enumerate() {
         let (p, q) = (point.direction, line[(i + 1) % line.len()].direction);
         let normal = p.cross(q);
-        // The second condition holds for what is given; refining may break it.
-        if normal.norm() < LEAST * LEAST || rest.dot(normal) < LEAST * normal.norm() {
+        // Points given are apart; refined ones may meet.
+        if normal.norm() < LEAST * LEAST || rest.dot(normal) < SEEN * normal.norm() {
             return Err(Some(i));
         }
     }

@@ -1,13 +1,20 @@
 //! A model that never was text, written out in full.
 
+mod component;
+
 use super::mirror::escaped;
 use condyle_math::function::{Curve, Function, FunctionOfSeveral};
 use condyle_math::{Affine, EulerOrder, Mat3, Vec3};
-use condyle_model::component::{Centre, Component};
 use condyle_model::model::Condition;
 use condyle_model::{Coordinate, CoordinateKind, Model, Range, Segment, SegmentId, Source, UpAxis};
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
+
+/// Adds lines to a text in memory, which cannot fail.
+macro_rules! line {
+    ($writer:expr, $($arg:tt)*) => {{ let _ = writeln!($writer.out, $($arg)*); }};
+}
+use line;
 
 /// Writes a model as a document that reads back to the same model: same order, same numbers.
 ///
@@ -24,11 +31,6 @@ struct Writer<'m> {
     out: String,
     /// A name for each component, unique in its joint set beside the coordinates.
     components: Vec<String>,
-}
-
-/// Adds lines to a text in memory, which cannot fail.
-macro_rules! line {
-    ($writer:expr, $($arg:tt)*) => {{ let _ = writeln!($writer.out, $($arg)*); }};
 }
 
 fn component_names(model: &Model) -> Vec<String> {
@@ -125,7 +127,7 @@ impl Writer<'_> {
             if c.default != [0.0, 0.0, 0.0, 1.0] {
                 line!(self, "default = {}", numbers(&c.default));
             }
-        } else if c.default[0] != 0.0 {
+        } else if c.default[0] != c.kind.neutral()[0] {
             line!(self, "default = {}", number(c.default[0]));
         }
         let Range { lower, upper, enforced } = c.range;
@@ -168,81 +170,6 @@ impl Writer<'_> {
             (false, 0) => format!("{set_name}.{name}"),
             (_, output) => format!("{set_name}.{name}.{}", output + 1),
         })
-    }
-
-    fn component(&mut self, set: usize, component: &Component) {
-        let inputs = component.inputs();
-        let several = matches!(component, Component::Combine(_) | Component::Product(_));
-        if several {
-            let port =
-                if matches!(component, Component::Product(_)) { "factors" } else { "inputs" };
-            let names: Vec<String> =
-                inputs.iter().map(|(_, _, source)| self.port(Some(set), *source)).collect();
-            line!(self, "{port} = [{}]", names.join(", "));
-        } else {
-            for (port, _, source) in inputs {
-                let name = self.port(Some(set), source);
-                line!(self, "{port} = {name}");
-            }
-        }
-        match component {
-            Component::Map(c) => match &c.functions[..] {
-                [one] => line!(self, "function = {}", function(one)),
-                list => {
-                    let list: Vec<String> = list.iter().map(function).collect();
-                    line!(self, "functions = [{}]", list.join(", "));
-                }
-            },
-            Component::Combine(c) => line!(self, "function = {}", several_of(&c.function)),
-            Component::Depend(c) => {
-                for (side, f) in [("lower", &c.lower), ("upper", &c.upper)] {
-                    if let Some(f) = f {
-                        line!(self, "{side} = {}", function(f));
-                    }
-                }
-            }
-            Component::Pivot(c) => {
-                line!(self, "axis = {}", vector(c.axis()));
-                match c.centre() {
-                    Centre::Intervals(list) => {
-                        let one = |(to, at): &(f64, Vec3)| match to.is_finite() {
-                            true => format!("{{ to = {}, at = {} }}", number(*to), vector(*at)),
-                            false => format!("{{ at = {} }}", vector(*at)),
-                        };
-                        let list: Vec<String> = list.iter().map(one).collect();
-                        line!(self, "centres = [{}]", list.join(", "));
-                    }
-                    Centre::Path(splines) => {
-                        let list = splines.each_ref().map(|s| knots(&mut s.knots()));
-                        line!(self, "path = [{}]", list.join(", "));
-                    }
-                }
-            }
-            Component::Compensate(c) => {
-                let name = |id: SegmentId| text(&self.model.segment(id).name);
-                let segment = name(c.segment);
-                let ancestors: Vec<String> = c.ancestors.iter().map(|id| name(*id)).collect();
-                line!(self, "segment = {segment}");
-                line!(self, "ancestors = [{}]", ancestors.join(", "));
-                line!(self, "weight = {}", number(c.weight));
-            }
-            Component::Rotate(c) => line!(self, "axis = {}", vector(c.axis)),
-            Component::Translate(c) => line!(self, "axis = {}", vector(c.axis)),
-            Component::Place(c) => {
-                for part in frame(c.child_in_parent) {
-                    line!(self, "{part}");
-                }
-            }
-            Component::Ellipsoid(c) => line!(self, "radii = {}", vector(c.radii)),
-            Component::ConstantCurvature(c) => {
-                line!(self, "neutral = {}", numbers(&c.neutral));
-                line!(self, "length = {}", number(c.length));
-            }
-            Component::Ball(_) | Component::Product(_) => {}
-            // A kind that is not written yet: its name stands there, and reading refuses it.
-            #[allow(unreachable_patterns, reason = "kinds are added in another crate")]
-            _ => {}
-        }
     }
 
     fn closures(&mut self) {

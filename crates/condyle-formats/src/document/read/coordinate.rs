@@ -1,0 +1,122 @@
+//! Coordinates: what they measure and where they may go.
+
+use super::super::draft::CoordinateDraft;
+use super::super::fields::{Fields, Reader};
+use super::super::keys;
+use super::super::tree::{Entry, Node, Value};
+use crate::diagnostic::nearest;
+use condyle_model::{CoordinateKind, Range};
+
+impl Reader<'_> {
+    /// The properties of a coordinate, on top of what is known of it.
+    pub(in super::super) fn coordinate(
+        &mut self,
+        owner: &str,
+        entry: &Entry,
+        mut coordinate: CoordinateDraft,
+        free_kind: bool,
+    ) -> CoordinateDraft {
+        let label = format!("{owner}.coordinate.{}", entry.key.text);
+        let fields = self.table(&entry.node, entry.key.spot, label, keys::COORDINATE);
+        if let Some(kind) = fields.get("kind").and_then(|n| self.text(n, "kind")) {
+            use CoordinateKind::{Orientation, Other, Rotation, Scale, Translation};
+            let kinds = [Rotation, Translation, Scale, Other, Orientation];
+            match kinds.into_iter().find(|k| k.name() == kind.text) {
+                Some(found) if free_kind || found == coordinate.kind => coordinate.kind = found,
+                Some(_) => {
+                    let message = format!("this coordinate is a {}", coordinate.kind.name());
+                    let help = "leave `kind` away: the joint's type says it";
+                    self.sources.error(kind.spot, "model/kind", message, help);
+                }
+                None => {
+                    let names = kinds.map(CoordinateKind::name);
+                    let help = match nearest(&kind.text, names) {
+                        Some(near) => format!("did you mean `{near}`?"),
+                        None => format!("kinds are: {}", names.join(", ")),
+                    };
+                    let message = format!("unknown kind of coordinate `{}`", kind.text);
+                    self.sources.error(kind.spot, "model/kind", message, help);
+                }
+            }
+        }
+        let unit = self.unit(&fields, coordinate.kind);
+        let orientation = coordinate.kind == CoordinateKind::Orientation;
+        coordinate.default = coordinate.kind.neutral();
+        if let Some(node) = fields.get("default") {
+            if !orientation {
+                coordinate.default[0] = unit * self.number(node, "default").unwrap_or(0.0);
+            } else if let Some(q) = self.some::<4>(node, "default") {
+                let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+                if (length - 1.0).abs() > 1e-6 {
+                    let message = format!("this quaternion has length {length}");
+                    let help = "give x, y, z, w of length 1; no turn is [0, 0, 0, 1]";
+                    self.sources.error(node.spot, "model/orientation", message, help);
+                }
+                coordinate.default = q;
+            }
+        }
+        if let Some(node) = fields.get("range") {
+            if orientation {
+                let message = "an orientation has no range";
+                self.sources.error(node.spot, "model/range", message, "leave it away");
+            } else {
+                self.range(node, unit, &mut coordinate.range);
+            }
+        }
+        let held = coordinate.range.lower.is_some() || coordinate.range.upper.is_some();
+        coordinate.range.enforced = self.flag(fields.get("enforced"), "enforced", held);
+        coordinate.locked = self.flag(fields.get("locked"), "locked", false);
+        coordinate.source =
+            fields.get("source").and_then(|n| self.text(n, "source")).map(|n| n.text);
+        coordinate.follows = fields.get("follows").and_then(|n| self.text(n, "follows"));
+        coordinate
+    }
+
+    /// What default and range of a coordinate are multiplied with.
+    fn unit(&mut self, fields: &Fields<'_>, kind: CoordinateKind) -> f64 {
+        const DEGREE: f64 = std::f64::consts::PI / 180.0;
+        let usual = match kind {
+            CoordinateKind::Rotation => self.angle_unit(fields.spot),
+            _ => 1.0,
+        };
+        let Some(name) = fields.get("unit").and_then(|n| self.text(n, "unit")) else {
+            return usual;
+        };
+        let known: &[(&str, f64)] = match kind {
+            CoordinateKind::Rotation => &[("rad", 1.0), ("deg", DEGREE)],
+            CoordinateKind::Translation => &[("m", 1.0), ("cm", 0.01), ("mm", 0.001)],
+            CoordinateKind::Other => {
+                &[("1", 1.0), ("rad", 1.0), ("deg", DEGREE), ("m", 1.0), ("mm", 0.001)]
+            }
+            CoordinateKind::Scale | CoordinateKind::Orientation => &[],
+        };
+        if let Some((_, factor)) = known.iter().find(|(unit, _)| *unit == name.text) {
+            return *factor;
+        }
+        let units: Vec<&str> = known.iter().map(|(unit, _)| *unit).collect();
+        let message = format!("a coordinate of kind {} has no unit `{}`", kind.name(), name.text);
+        let help = match units[..] {
+            [] => "leave it away".to_owned(),
+            _ => format!("units are: {}", units.join(", ")),
+        };
+        self.sources.error(name.spot, "model/unit", message, help);
+        usual
+    }
+
+    fn range(&mut self, node: &Node, unit: f64, range: &mut Range) {
+        let sides = self.list(node, "range").unwrap_or_default();
+        let [low, high] = sides else {
+            if matches!(node.value, Value::List(_)) {
+                let message = format!("`range` has {} sides", sides.len());
+                let help = "give [lowest, highest]; a side may be \"none\"";
+                self.sources.error(node.spot, "model/length", message, help);
+            }
+            return;
+        };
+        let mut side = |node: &Node| match &node.value {
+            Value::Text(text) if text == "none" => None,
+            _ => self.number(node, "range").map(|n| unit * n),
+        };
+        (range.lower, range.upper) = (side(low), side(high));
+    }
+}

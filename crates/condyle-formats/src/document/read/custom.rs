@@ -1,0 +1,77 @@
+//! Components that move by a law which a program brings.
+
+use super::super::fields::{Fields, Reader};
+use super::super::law::Law;
+use super::super::tree::Value;
+use crate::diagnostic::nearest;
+use condyle_model::component::Parameters;
+
+impl Reader<'_> {
+    pub(super) fn custom(&mut self, fields: &Fields<'_>) -> Option<Law> {
+        let parameters = self.parameters(fields);
+        let Some(node) = fields.get("law") else {
+            self.missing(fields, "law", "the name of a law that the program knows");
+            return None;
+        };
+        let law = self.text(node, "law")?;
+        let Some(wanted) = self.laws.inputs(&law.text) else {
+            // The registry knows which laws there are.
+            let refused = self.laws.make(&law.text, Parameters::new(), vec![]);
+            let message = refused.err().unwrap_or_else(|| format!("unknown law `{}`", law.text));
+            let help = match nearest(&law.text, self.laws.names()) {
+                Some(near) => format!("did you mean \"{near}\"?"),
+                None => "register it in the program that reads this document".to_owned(),
+            };
+            self.sources.error(law.spot, "model/law", message, help);
+            return None;
+        };
+        let wanted = wanted.join(", ");
+        let takes = self.laws.inputs(&law.text).map_or(0, <[String]>::len);
+        let given = fields.get("inputs").map(|node| match &node.value {
+            Value::List(list) => (node.spot, list.len()),
+            _ => (node.spot, 1),
+        });
+        let mut sound = true;
+        if let Some((spot, given)) = given
+            && given != takes
+        {
+            let inputs = if takes == 1 { "input" } else { "inputs" };
+            let message = format!("law `{}` takes {takes} {inputs}, not {given}", law.text);
+            let help = format!("connect, in this order: {wanted}");
+            self.sources.error(spot, "model/arity", message, help);
+            sound = false;
+        }
+        match self.laws.make(&law.text, parameters?, vec![]) {
+            Ok(custom) => Some(Law::Custom(custom)).filter(|_| sound),
+            Err(why) => {
+                let spot = fields.get("parameters").map_or(fields.spot, |node| node.spot);
+                let message = format!("law `{}` cannot be made: {why}", law.text);
+                let help = "give other `parameters`: numbers or lists, in metres and radians";
+                self.sources.error(spot, "model/law", message, help);
+                None
+            }
+        }
+    }
+
+    /// Numbers and lists of numbers by name, as they are given.
+    fn parameters(&mut self, fields: &Fields<'_>) -> Option<Parameters> {
+        let Some(node) = fields.get("parameters") else { return Some(Parameters::new()) };
+        if !matches!(node.value, Value::Table(_)) {
+            self.wrong(node, "parameters", "a table such as { lift = 0.02 }");
+            return None;
+        }
+        let mut all = Some(Parameters::new());
+        for entry in self.entries(node, "parameters") {
+            let (key, node) = (&entry.key.text, &entry.node);
+            let numbers = match &node.value {
+                Value::List(_) => self.numbers(node, key),
+                _ => self.number(node, key).map(|number| vec![number]),
+            };
+            match (numbers, &mut all) {
+                (Some(numbers), Some(all)) => _ = all.insert(key.clone(), numbers),
+                _ => all = None,
+            }
+        }
+        all
+    }
+}

@@ -1,0 +1,132 @@
+//! The parameters of components that have a shape: paths, ellipsoids, columns, scales and shears.
+
+use super::super::fields::{Fields, Reader};
+use super::super::keys;
+use super::super::law::Law;
+use super::super::tree::Node;
+use condyle_math::Vec3;
+use condyle_math::function::SimmSpline;
+use condyle_model::component::{Along, Centre, Heading, SurfaceAxis};
+
+impl Reader<'_> {
+    /// Where the centre of a pivot is: at one point for each interval, or on a smooth path.
+    pub(super) fn centre(&mut self, fields: &Fields<'_>) -> Option<Centre> {
+        if let Some(node) = fields.get("path") {
+            let unit = self.angle_unit(node.spot);
+            return self.path(node, unit, "angle").map(Centre::Path);
+        }
+        let Some(node) = fields.get("centres") else {
+            self.missing(fields, "centres", "centres such as [{ to = 1.5, at = [0, 0.01, 0] }]");
+            return None;
+        };
+        let unit = self.angle_unit(node.spot);
+        let mut centres = vec![];
+        for node in self.list(node, "centres")? {
+            let label = format!("{}.centres", fields.label);
+            let fields = self.table(node, node.spot, label, keys::CENTRE);
+            // The last interval need not end.
+            let to = match fields.get("to") {
+                Some(node) => unit * self.number(node, "to")?,
+                None => f64::INFINITY,
+            };
+            centres
+                .push((to, fields.get("at").map_or(Some(Vec3::ZERO), |n| self.vector(n, "at"))?));
+        }
+        Some(Centre::Intervals(centres))
+    }
+
+    /// Three splines for x, y and z; `unit` is what their arguments are multiplied with.
+    fn path(&mut self, node: &Node, unit: f64, argument: &str) -> Option<Box<[SimmSpline; 3]>> {
+        let list = self.list(node, "path")?;
+        let mut splines = vec![];
+        for node in list {
+            let (arguments, places) = self.pairs(node, "path")?;
+            let arguments = arguments.into_iter().map(|a| unit * a).collect();
+            splines.push(self.through(node, SimmSpline::new(arguments, places))?);
+        }
+        match splines.try_into() {
+            Ok(splines) => Some(Box::new(splines)),
+            Err(_) => {
+                let message = format!("`path` has {} curves", list.len());
+                let help = format!("give three lists of [{argument}, place]: for x, y and z");
+                self.sources.error(node.spot, "model/length", message, help);
+                None
+            }
+        }
+    }
+
+    /// A path, and how a segment turns with it.
+    pub(in super::super) fn curve(&mut self, fields: &Fields<'_>) -> Option<Law> {
+        let unit = fields.get("in").map_or(Some(1.0), |n| self.unit_of(n, "in"));
+        let path = match fields.get("path") {
+            Some(node) => unit.and_then(|unit| self.path(node, unit, "parameter")),
+            None => {
+                self.missing(fields, "path", "three lists of [parameter, place]: for x, y and z");
+                None
+            }
+        };
+        let heading = match (fields.get("forward"), fields.get("up")) {
+            (None, None) => None,
+            (Some(forward), Some(up)) => {
+                let (forward, up) = (self.vector(forward, "forward"), self.vector(up, "up"));
+                Some(Heading { forward: forward?, up: up? })
+            }
+            (one, other) => {
+                let (has, lacks) =
+                    if one.is_some() { ("forward", "up") } else { ("up", "forward") };
+                let spot = one.or(other).map_or(fields.spot, |node| node.spot);
+                let message = format!("`{has}` stands without `{lacks}`");
+                let help = "give both: the axis that follows the curve and the one that stays up; \
+                            or neither, for no turn";
+                self.sources.error(spot, "model/missing", message, help);
+                return None;
+            }
+        };
+        Some(Law::Curve { path: path?, heading })
+    }
+
+    pub(in super::super) fn ellipsoid(&mut self, fields: &Fields<'_>) -> Option<Law> {
+        let radii = self.needed(fields, "radii", "three half axes in metres");
+        let words = [("opensim", SurfaceAxis::OpenSim), ("normal", SurfaceAxis::Normal)];
+        let axis = self.word(fields, "surface_axis", &words);
+        Some(Law::Ellipsoid(radii?, axis?))
+    }
+
+    pub(super) fn column(&mut self, fields: &Fields<'_>) -> Option<Law> {
+        let neutral = match fields.get("neutral") {
+            Some(node) => {
+                let unit = self.angle_unit(node.spot);
+                self.some::<3>(node, "neutral")?.map(|a| unit * a)
+            }
+            None => [0.0; 3],
+        };
+        let Some(length) = fields.get("length") else {
+            self.missing(fields, "length", "the length of the arc in metres");
+            return None;
+        };
+        Some(Law::ConstantCurvature { neutral, length: self.number(length, "length")? })
+    }
+
+    /// A scale everywhere, along an axis, or along an axis with the volume kept.
+    pub(in super::super) fn scale(&mut self, fields: &Fields<'_>) -> Option<Law> {
+        let volume = self.flag(fields.get("volume"), "volume", false);
+        let along = match fields.get("axis") {
+            Some(node) => {
+                let axis = self.vector(node, "axis")?;
+                if volume { Along::Volume(axis) } else { Along::Axis(axis) }
+            }
+            None if volume => {
+                self.missing(fields, "axis", "the axis along which it grows while it thins");
+                return None;
+            }
+            None => Along::Everywhere,
+        };
+        Some(Law::Scale(along))
+    }
+
+    pub(in super::super) fn shear(&mut self, fields: &Fields<'_>) -> Option<Law> {
+        let along = self.needed(fields, "along", "the direction in which layers slide");
+        let across = self.needed(fields, "across", "the direction in which layers are stacked");
+        Some(Law::Shear { along: along?, across: across? })
+    }
+}
