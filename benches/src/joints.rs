@@ -99,16 +99,22 @@ fn ball_in_cone(b: &mut ModelBuilder, set: JointSetId, half: f64) -> Source {
     b.product(set, "product", turns)
 }
 
-/// Ribs and three pairs of points on a scapula; sizes of a person.
+/// Where the scapula hangs in the thorax at rest.
+pub const SCAPULA: Vec3 = Vec3::new(-0.02, 0.02, 0.16);
+
+/// Ribs and three pairs of points on a scapula; sizes of a person, and invented.
 pub fn gliding() -> Gliding {
+    let (centre, radii) = (Vec3::new(-0.03, -0.1, 0.05), Vec3::new(0.1, 0.18, 0.1));
+    // Directions from the centre of the ribs to where they touch, as seen from the scapula's joint.
+    let point = |x, y, z| centre + Vec3::new(x, y, z).normalized().times(radii) - SCAPULA;
     let pair = |first, second, at| ContactPair { first, second, at };
     let pairs = vec![
-        pair(Vec3::new(-0.09, -0.03, -0.06), Vec3::new(-0.07, -0.11, -0.05), [0.3, 0.0]),
-        pair(Vec3::new(-0.09, -0.04, -0.05), Vec3::new(-0.07, -0.12, -0.04), [-0.1, 0.1]),
-        pair(Vec3::new(-0.08, -0.05, -0.05), Vec3::new(-0.06, -0.12, -0.05), [0.1, 0.8]),
+        pair(point(-0.83, 0.5, 0.28), point(-0.93, -0.1, 0.3), [0.3, 0.0]),
+        pair(point(-0.85, 0.4, 0.25), point(-0.93, -0.2, 0.3), [-0.1, 0.1]),
+        pair(point(-0.87, 0.3, 0.3), point(-0.9, -0.2, 0.5), [0.1, 0.8]),
     ];
-    let centre = Affine::from_translation(Vec3::new(-0.05, -0.06, 0.0));
-    Gliding::new(centre, Vec3::new(0.09, 0.18, 0.12), Vec3::new(0.1, 0.97, 0.2), pairs)
+    let ribs = Affine::from_translation(centre);
+    Gliding::new(ribs, radii, Vec3::new(0.1, 0.97, 0.2), pairs)
         .unwrap_or_else(|e| panic!("ribs: {e}"))
 }
 

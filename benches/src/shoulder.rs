@@ -1,7 +1,7 @@
 //! A shoulder as a network of twenty components (the structure of Shao & Ng-Thow-Hing 2003, figures
 //! 9 to 11), with invented sizes of a person.
 
-use crate::joints::{cone, gliding};
+use crate::joints::{SCAPULA, cone, gliding};
 use condyle_math::Vec3;
 use condyle_math::function::{Curve, Function, PiecewiseLinear};
 use condyle_model::component::{
@@ -16,7 +16,7 @@ pub fn network() -> Model {
     let clavicle = b.segment("clavicle", Some(thorax));
     b.place_joint(clavicle, Vec3::new(0.0, 0.0, 0.02));
     let scapula = b.segment("scapula", Some(clavicle));
-    b.place_joint(scapula, Vec3::new(-0.02, 0.02, 0.14));
+    b.place_joint(scapula, SCAPULA - Vec3::new(0.0, 0.0, 0.02));
     let humerus = b.segment("humerus", Some(scapula));
     b.place_joint(humerus, Vec3::new(-0.01, -0.03, 0.01));
     let set = b.joint_set("shoulder");

@@ -37,7 +37,8 @@ pub struct JointCone {
 /// What a [`JointCone`] holds.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Swinging {
-    /// Three angles in radians and their axes, in the order of the product.
+    /// Three angles in radians and their axes, in the order of the product; the lengths of axes are
+    /// normalised when the model is built.
     Angles([Source; 3], [Vec3; 3]),
     /// Two angles and their axes: the bone does not turn about itself.
     Directions([Source; 2], [Vec3; 2]),
@@ -72,9 +73,9 @@ impl JointCone {
     /// The axes as three: the rest direction stands for a third that is not there.
     fn axes(&self) -> Option<[Vec3; 3]> {
         match &self.of {
-            Swinging::Angles(_, axes) => Some(axes.map(Vec3::normalized)),
+            Swinging::Angles(_, axes) => Some(*axes),
             Swinging::Directions(_, [a, b]) => {
-                Some([a.normalized(), b.normalized(), self.cone.rest()])
+                Some([*a, *b, self.cone.rest()])
             }
             Swinging::Orientation(_) => None,
         }
@@ -82,7 +83,20 @@ impl JointCone {
 
     /// The sine of the angle by which the second axis misses being perpendicular to the others.
     pub fn obliqueness(&self) -> f64 {
-        self.axes().map_or(0.0, |[a, b, c]| a.dot(b).abs().max(c.dot(b).abs()))
+        self.axes().map_or(0.0, |axes| {
+            let [a, b, c] = axes.map(Vec3::normalized);
+            let (one, other) = (a.dot(b).abs(), c.dot(b).abs());
+            if one > other || one.is_nan() { one } else { other }
+        })
+    }
+
+    /// Gives all axes the length 1.
+    pub(crate) fn normalise(&mut self) {
+        match &mut self.of {
+            Swinging::Angles(_, axes) => *axes = axes.map(Vec3::normalized),
+            Swinging::Directions(_, axes) => *axes = axes.map(Vec3::normalized),
+            Swinging::Orientation(_) => {}
+        }
     }
 
     /// The rotation of these numbers, with the axis about which each turns it in the parent.
@@ -101,9 +115,17 @@ impl JointCone {
         (turned, moving)
     }
 
+    /// The rotation of these numbers alone.
+    fn turned(&self, numbers: &[f64]) -> Mat3 {
+        let Some(axes) = self.axes() else { return self.rotation(numbers).0 };
+        let turn = |i: usize| Mat3::rotation_about(axes[i], Scalar::sin_cos(numbers[i]));
+        let swing = turn(0) * turn(1);
+        if numbers.len() > 2 { swing * turn(2) } else { swing }
+    }
+
     /// The legal numbers for those asked for: `None` if they are legal.
     pub(crate) fn legal(&self, asked: &[f64]) -> Option<[f64; 4]> {
-        let (rotation, _) = self.rotation(asked);
+        let rotation = self.turned(asked);
         if let Swinging::Directions(..) = self.of {
             let direction = rotation * self.cone.rest();
             if self.cone.contains(direction) {

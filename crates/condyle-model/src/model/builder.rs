@@ -318,6 +318,7 @@ impl ModelBuilder {
                         *axis = axis.normalized();
                     }
                 }
+                Component::Cone(c) => c.normalise(),
                 Component::Shear(c) => {
                     c.along = c.along.normalized();
                     c.across = c.across.normalized();

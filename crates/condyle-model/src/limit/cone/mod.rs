@@ -165,7 +165,7 @@ impl Cone {
         let boundary = Boundary::new(axis, &directions);
         let twist = twist_at_rest.map(|at_rest| {
             let at_points = outline.iter().map(|point| point.twist.unwrap_or(at_rest)).collect();
-            TwistBounds { at_rest, at_points }
+            TwistBounds::new(at_rest, at_points)
         });
         Ok(Self { rest, twist_at_rest, points, subdivisions, projection, boundary, twist })
     }
@@ -272,6 +272,9 @@ impl Cone {
             return unchanged;
         }
         let mut twist = twist::twist(&rotation, rest, v);
+        if inside && self.twist.as_ref().is_some_and(|bounds| bounds.always_holds(twist)) {
+            return unchanged;
+        }
         let (mut direction, mut margin) = (v, f64::INFINITY);
         if !inside {
             let projected = self.project_outside(v);

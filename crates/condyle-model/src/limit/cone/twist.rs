@@ -103,9 +103,27 @@ pub(super) struct TwistBounds {
     pub(super) at_rest: [f64; 2],
     /// At the start of each edge.
     pub(super) at_points: Vec<[f64; 2]>,
+    /// What is inside all of them.
+    core: [f64; 2],
 }
 
 impl TwistBounds {
+    pub(super) fn new(at_rest: [f64; 2], at_points: Vec<[f64; 2]>) -> Self {
+        let all = || at_points.iter().chain([&at_rest]);
+        let plain = all().all(|b| b[0] > -PI && b[1] < PI);
+        let lower = all().map(|b| b[0]).fold(-PI, f64::max);
+        let upper = all().map(|b| b[1]).fold(PI, f64::min);
+        let core = if plain { [lower, upper] } else { [PI, -PI] };
+        Self { at_rest, at_points, core }
+    }
+
+    /// Whether a twist in (-π, π] is inside the bounds of every direction, which are means of the
+    /// given ones. Never where bounds reach beyond the half turn at which a twist jumps.
+    #[inline]
+    pub(super) fn always_holds(&self, twist: f64) -> bool {
+        self.core[0] <= twist && twist <= self.core[1]
+    }
+
     /// The bounds for a direction of length 1, and how they grow with it: tangent vectors there.
     #[inline]
     pub(super) fn at(&self, boundary: &Boundary, v: Vec3) -> ([f64; 2], [Vec3; 2]) {
