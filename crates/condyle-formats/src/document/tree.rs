@@ -241,6 +241,9 @@ fn merge(sources: &mut Sources, into: &mut Vec<Entry>, more: Vec<Entry>) {
         };
         match (&mut into[known].node.value, entry.node.value) {
             (Value::Table(known), Value::Table(more)) => merge(sources, known, more),
+            // Said twice alike, such as one mirror for several texts, it is said once.
+            (Value::Text(known), Value::Text(more)) if *known == more => {}
+            (Value::Number(known), Value::Number(more)) if *known == more => {}
             _ => sources.error(
                 entry.key.spot,
                 "model/duplicate",
