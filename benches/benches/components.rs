@@ -33,7 +33,10 @@ fn main() {
     if named("shoulder") {
         let model = shoulder::network();
         let [posed, open, jacobian] = measure(&model);
-        println!("a shoulder of {} components: {posed:.0} ns posed, {open:.0} ns open, {jacobian:.0} ns with its Jacobian (target: 1000)", model.components().len());
+        println!(
+            "a shoulder of {} components: {posed:.0} ns posed, {open:.0} ns open, {jacobian:.0} ns with its Jacobian (target: 1000)",
+            model.components().len()
+        );
     }
 }
 

@@ -4,8 +4,9 @@ use crate::random::Random;
 use condyle_math::function::{Function, SimmSpline};
 use condyle_math::{Affine, Quat, Scalar, Vec3};
 use condyle_model::component::{
-    Along, Centre, Compensate, Component, ConstantCurvature, Contact, ContactPair, Curve, Depend, Ellipsoid,
-    Gliding, Heading, JointCone, Law, Pivot, Registry, Scale, Shear, Source, SurfaceAxis, Swinging,
+    Along, Centre, Compensate, Component, ConstantCurvature, Contact, ContactPair, Curve, Depend,
+    Ellipsoid, Gliding, Heading, JointCone, Law, Pivot, Registry, Scale, Shear, Source,
+    SurfaceAxis, Swinging,
 };
 use condyle_model::{
     Cone, ConePoint, CoordinateKind, JointSetId, Model, ModelBuilder, Projection, Range, SegmentId,
@@ -92,9 +93,8 @@ fn ball_in_cone(b: &mut ModelBuilder, set: JointSetId, half: f64) -> Source {
     let Source::Output(id, _) = b.component(set, "cone", Component::Cone(cone)) else {
         unreachable!("a component has outputs")
     };
-    let turns = (0..3).map(|k| {
-        b.rotate(set, &format!("turn_{k}"), Source::Output(id, k), axes[k as usize])
-    });
+    let turns = (0..3)
+        .map(|k| b.rotate(set, &format!("turn_{k}"), Source::Output(id, k), axes[k as usize]));
     let turns = turns.collect();
     b.product(set, "product", turns)
 }

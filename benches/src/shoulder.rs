@@ -48,7 +48,12 @@ pub fn network() -> Model {
 
     // What an animator gives from -1 to 1, as angles through 0.
     let input = |b: &mut ModelBuilder, name: &str, source, ends: [f64; 2]| {
-        b.map(set, name, source, lines(&[(-(1f64.to_degrees()), ends[0]), (0.0, 0.0), (1f64.to_degrees(), ends[1])]))
+        b.map(
+            set,
+            name,
+            source,
+            lines(&[(-(1f64.to_degrees()), ends[0]), (0.0, 0.0), (1f64.to_degrees(), ends[1])]),
+        )
     };
     let elevation = input(&mut b, "elevation_angle", elevation, [-10.0, 30.0]);
     let protraction = input(&mut b, "protraction_angle", protraction, [-25.0, 30.0]);

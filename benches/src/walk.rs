@@ -27,7 +27,8 @@ pub fn motion(model: &Model, frames: usize) -> Vec<Vec<f64>> {
                     }
                     CoordinateKind::Rotation => stored[place] = 0.3 * swing,
                     CoordinateKind::Translation => stored[place] = 0.1 * swing,
-                    CoordinateKind::Scale | CoordinateKind::Other | CoordinateKind::Orientation => {}
+                    CoordinateKind::Scale | CoordinateKind::Other | CoordinateKind::Orientation => {
+                    }
                 }
             }
             stored

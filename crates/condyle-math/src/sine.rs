@@ -35,9 +35,7 @@ const SERIES: [[f64; 2]; 6] = [
 #[inline(always)]
 fn series(z: f64) -> [f64; 2] {
     let z2 = z * z;
-    let step = |n: usize, sum: [f64; 2]| {
-        [SERIES[n][0] + z2 * sum[0], SERIES[n][1] + z2 * sum[1]]
-    };
+    let step = |n: usize, sum: [f64; 2]| [SERIES[n][0] + z2 * sum[0], SERIES[n][1] + z2 * sum[1]];
     let even = step(0, step(2, SERIES[4]));
     let odd = step(1, step(3, SERIES[5]));
     [even[0] + z * odd[0], even[1] + z * odd[1]]

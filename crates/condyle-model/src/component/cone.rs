@@ -74,9 +74,7 @@ impl JointCone {
     fn axes(&self) -> Option<[Vec3; 3]> {
         match &self.of {
             Swinging::Angles(_, axes) => Some(*axes),
-            Swinging::Directions(_, [a, b]) => {
-                Some([*a, *b, self.cone.rest()])
-            }
+            Swinging::Directions(_, [a, b]) => Some([*a, *b, self.cone.rest()]),
             Swinging::Orientation(_) => None,
         }
     }
@@ -158,8 +156,7 @@ impl JointCone {
         let near = |angle: f64, asked: f64| angle - ((angle - asked) / TAU).round() * TAU;
         let solve = |sign: f64| {
             // Where the first axis and the third fall together only their sum is known.
-            let first =
-                if sine > 1e-9 { (sign * up).atan2(-sign * side) } else { asked[0] };
+            let first = if sine > 1e-9 { (sign * up).atan2(-sign * side) } else { asked[0] };
             let second = (sign * sine).atan2(along) - lead;
             let mut found = [near(first, asked[0]), near(second, asked[1]), 0.0, 0.0];
             if let Some(rotation) = rotation {
@@ -233,7 +230,7 @@ mod tests {
                 let off = product.at(i / 3, i % 3) - expected.at(i / 3, i % 3);
                 assert!(off.abs() < 1e-12, "{asked:?} {off}");
             }
-            for (_, row) in limit.open_rows(&found).iter().enumerate() {
+            for row in limit.open_rows(&found) {
                 assert!(row.0 > -1e-9, "{row:?}");
             }
         }

@@ -113,11 +113,8 @@ mod tests {
         let spline = |f: &dyn Fn(f64) -> f64| {
             SimmSpline::new(u.clone(), u.iter().map(|&u| f(u)).collect()).unwrap()
         };
-        let path = [
-            spline(&|u| 2.0 * u.sin()),
-            spline(&|_| 0.0),
-            spline(&|u| 2.0 * (u.cos() - 1.0)),
-        ];
+        let path =
+            [spline(&|u| 2.0 * u.sin()), spline(&|_| 0.0), spline(&|u| 2.0 * (u.cos() - 1.0))];
         let parameter = Source::Coordinate(CoordinateId(0));
         Curve { parameter, path: Box::new(path), heading }
     }

@@ -32,8 +32,8 @@
 
 mod ball;
 mod combine;
-mod cone;
 mod compensate;
+mod cone;
 mod constant_curvature;
 mod contact;
 mod curve;

@@ -250,12 +250,15 @@ impl Law for Pivot {
         let angle = inputs[0];
         let rotation = Mat3::rotation_about(self.axis.cast(), angle.sin_cos());
         let piece = self.piece_at(angle.value());
-        let (particular, lag) = (|k: fn(Vec3) -> f64| {
-            angle.chain(|x| {
-                let (value, slope) = piece.particular_at(x);
-                (k(value), k(slope))
-            })
-        }, piece.lag.cast());
+        let (particular, lag) = (
+            |k: fn(Vec3) -> f64| {
+                angle.chain(|x| {
+                    let (value, slope) = piece.particular_at(x);
+                    (k(value), k(slope))
+                })
+            },
+            piece.lag.cast(),
+        );
         let place = Vec3::new(particular(|v| v.x), particular(|v| v.y), particular(|v| v.z));
         Affine::new(rotation, place + rotation * lag)
     }

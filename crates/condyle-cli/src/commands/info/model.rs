@@ -244,7 +244,9 @@ fn amount(kind: CoordinateKind, value: f64, far: bool) -> String {
         CoordinateKind::Rotation => format!("{}°", rounded(value.to_degrees(), 2)),
         CoordinateKind::Translation if far => format!("{} m", rounded(value, 3)),
         CoordinateKind::Translation => format!("{} mm", rounded(1e3 * value, 1)),
-        CoordinateKind::Scale | CoordinateKind::Other | CoordinateKind::Orientation => rounded(value, 4),
+        CoordinateKind::Scale | CoordinateKind::Other | CoordinateKind::Orientation => {
+            rounded(value, 4)
+        }
     }
 }
 

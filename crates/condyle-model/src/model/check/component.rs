@@ -2,8 +2,8 @@
 
 use super::{Finding, Severity, finding, source_type};
 use crate::component::{
-    Compensate, Component, Contact, Curve, JointCone, Law, MOST_COMBINED, MOST_LAW_INPUTS, Shear, Source,
-    Swinging,
+    Compensate, Component, Contact, Curve, JointCone, Law, MOST_COMBINED, MOST_LAW_INPUTS, Shear,
+    Source, Swinging,
 };
 use crate::model::{Condition, Model, Node, SegmentId, dependency_order};
 use condyle_math::Vec3;
@@ -25,8 +25,11 @@ pub(super) fn check_components(model: &Model, findings: &mut Vec<Finding>) {
                 findings.push(finding(
                     Severity::Error,
                     "model/no-such-output",
-                    format!("port `{port}` of {place} reads output {} of `{}`", output + 1,
-                        model.components[id.index()].name),
+                    format!(
+                        "port `{port}` of {place} reads output {} of `{}`",
+                        output + 1,
+                        model.components[id.index()].name
+                    ),
                     format!("it has {}", model.components[id.index()].component.outputs().1),
                 ));
             }
@@ -156,7 +159,9 @@ fn check_curve(place: &str, curve: &Curve, findings: &mut Vec<Finding>) {
         findings.push(finding(
             Severity::Warning,
             "model/curve-heading",
-            format!("the curve of {place} stops, or runs along `up`, so its heading is undefined there"),
+            format!(
+                "the curve of {place} stops, or runs along `up`, so its heading is undefined there"
+            ),
             "give another `up`, or a curve whose points differ",
         ));
     }
