@@ -2,11 +2,30 @@
 //! after it was written.
 #![no_main]
 
-use condyle_formats::document::{read, render, write};
+use condyle_formats::document::{read_with, render, write};
+use condyle_math::{Affine, Mat3, Scalar, Vec3};
+use condyle_model::component::{Law, Registry};
 use condyle_model::{Mode, Pose, Program};
 use libfuzzer_sys::fuzz_target;
 
+/// A user's law: a turn with a lift.
+#[derive(Debug)]
+struct Cam(f64);
+
+impl Law for Cam {
+    fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
+        let (s, c) = inputs[0].sin_cos();
+        let turn = Mat3::identity().rotated_z((s, c));
+        Affine::new(turn, Vec3::new(S::zero(), (S::one() - c).scale(self.0), S::zero()))
+    }
+}
+
 fuzz_target!(|data: &[u8]| {
+    let mut registry = Registry::default();
+    registry.register("cam", &["angle"], |parameters| {
+        let lift = parameters.get("lift").and_then(|v| v.first()).ok_or("it needs a `lift`")?;
+        Ok(Cam(*lift))
+    });
     let text = String::from_utf8_lossy(data);
     // What is included is the text itself under other names, and nothing after a few.
     let mut left = 3;
@@ -14,7 +33,7 @@ fuzz_target!(|data: &[u8]| {
         left -= 1;
         if left < 0 || name.len() > 20 { Err("nothing there".to_owned()) } else { Ok(text.to_string()) }
     };
-    let model = match read(&text, &mut include) {
+    let model = match read_with(&text, &mut include, &registry) {
         Ok(read) => read.value.model,
         Err(errors) => {
             assert!(!errors.is_empty());
@@ -23,7 +42,7 @@ fuzz_target!(|data: &[u8]| {
         }
     };
     let written = write(&model);
-    let again = match read(&written, &mut |_| Err(String::new())) {
+    let again = match read_with(&written, &mut |_| Err(String::new()), &registry) {
         Ok(read) => read.value.model,
         Err(errors) => panic!("{}\n{written}", render("written", &written, &errors)),
     };

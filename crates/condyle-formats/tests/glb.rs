@@ -8,7 +8,8 @@ use gltf::animation::util::ReadOutputs;
 /// A turn about z by so many radians, at so much along x.
 fn pose(angle: f64, x: f64) -> LocalPose {
     let (sin, cos) = (angle / 2.0).sin_cos();
-    LocalPose { translation: [x, 0.0, 0.0], rotation: [0.0, 0.0, sin, cos] }
+    let rotation = [0.0, 0.0, sin, cos];
+    LocalPose { translation: [x, 0.0, 0.0], rotation, ..LocalPose::IDENTITY }
 }
 
 /// An arm of two bones that bends and slides over four frames, with two recorded markers.
@@ -137,6 +138,35 @@ fn channels_hold_the_motion() {
 }
 
 #[test]
+fn only_what_changes_its_size_has_a_channel_for_it() {
+    let mut scene = arm();
+    // The hand is small throughout; the forearm grows along its bone while it thins.
+    scene.nodes[2].rest.scale = [0.5, 0.25, 2.0];
+    for (pose, length) in scene.tracks[0].poses.iter_mut().zip([1.0, 1.5, 2.0, 4.0]) {
+        pose.scale = [1.0 / f64::sqrt(length), length, 1.0 / f64::sqrt(length)];
+    }
+    let (document, bin) = reread(&scene);
+    let scale = |name: &str| {
+        let node = document.nodes().find(|n| n.name() == Some(name)).unwrap();
+        node.transform().decomposed().2
+    };
+    assert_eq!(scale("hand"), [0.5, 0.25, 2.0]);
+    assert_eq!((scale("upper"), scale("fore")), ([1.0; 3], [1.0; 3]));
+    let animation = document.animations().next().unwrap();
+    let mut sized = vec![];
+    for channel in animation.channels() {
+        let reader = channel.reader(|_| Some(bin.as_slice()));
+        if let ReadOutputs::Scales(scales) = reader.read_outputs().unwrap() {
+            sized.push(channel.target().node().name().unwrap().to_owned());
+            let scales: Vec<[f32; 3]> = scales.collect();
+            assert_eq!(scales[3], [0.5, 4.0, 0.5]);
+            assert_eq!(scales[1][0], 1.5f64.sqrt().recip() as f32);
+        }
+    }
+    assert_eq!(sized, ["fore"]);
+}
+
+#[test]
 fn bounds_and_alignment_are_as_the_format_asks() {
     let (document, bin) = reread(&arm());
     for view in document.views() {
@@ -184,7 +214,7 @@ fn repeated_times_are_dropped() {
 #[test]
 fn faults_name_the_node() {
     type Spoil = fn(&mut Scene);
-    let cases: [(&str, &str, Spoil); 10] = [
+    let cases: [(&str, &str, Spoil); 11] = [
         ("glb/parent", "node 0 `upper` has parent 2", |s| s.nodes[0].parent = Some(2)),
         ("glb/track", "a track moves node 7", |s| s.tracks[0].node = 7),
         ("glb/track", "two tracks move `upper`", |s| s.tracks[0].node = 0),
@@ -195,6 +225,7 @@ fn faults_name_the_node() {
         ("glb/time", "time 3 is not finite", |s| s.times[3] = f64::NAN),
         ("glb/pose", "`fore` has", |s| s.tracks[0].poses[2].rotation = [0.0; 4]),
         ("glb/pose", "`hand` has", |s| s.nodes[2].rest.translation[0] = f64::INFINITY),
+        ("glb/pose", "`fore` has", |s| s.tracks[0].poses[1].scale[2] = f64::NAN),
         ("glb/pose", "marker `elbow` is not finite", |s| {
             s.markers[0].positions[0] = Some([f64::NAN; 3]);
         }),

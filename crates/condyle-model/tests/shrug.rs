@@ -1,8 +1,11 @@
 //! The shrug of Shao & Ng-Thow-Hing 2003, figure 3: shoulder bones lift, the arm keeps hanging.
 
 use condyle_math::{Quat, Vec3};
-use condyle_model::component::Compensate;
-use condyle_model::{Mode, Model, ModelBuilder, Pose, Program, SegmentId};
+use condyle_math::function::{Curve, Function, PiecewiseLinear};
+use condyle_model::component::{Compensate, Depend};
+use condyle_model::{
+    CoordinateKind, Mode, Model, ModelBuilder, Pose, Program, SegmentId,
+};
 
 /// Thorax, clavicle, scapula and humerus, each a hinge; the thorax turns too.
 fn shoulder(weight: Option<f64>) -> (Model, [SegmentId; 4]) {
@@ -80,4 +83,59 @@ fn only_ancestors_can_be_compensated() {
     let findings = b.build().unwrap_err();
     assert_eq!(findings[0].code, "model/not-an-ancestor");
     assert!(findings[0].message.contains("`leg`"), "{}", findings[0].message);
+}
+
+/// Piecewise linear bounds through points in degrees.
+fn lines(points: &[(f64, f64)]) -> Function {
+    let (x, y) = points.iter().map(|(x, y)| (x.to_radians(), y.to_radians())).unzip();
+    Function::from(Curve::PiecewiseLinear(PiecewiseLinear::new(x, y).unwrap()))
+}
+
+#[test]
+fn a_lifted_arm_lifts_the_clavicle() {
+    // Shao & Ng-Thow-Hing 2003, section 5.2: abduction of 0, 60, 120, 180 degrees bounds the
+    // elevation of the clavicle from below at -10, -6.7, 4.85 and 23 degrees.
+    let table = [(0.0, -10.0), (60.0, -6.7), (120.0, 4.85), (180.0, 23.0)];
+    let mut b = ModelBuilder::new("shoulder");
+    let clavicle = b.segment("clavicle", None);
+    let set = b.joint_set("shoulder");
+    let abduction = b.coordinate(set, "abduction", CoordinateKind::Rotation);
+    let elevation = b.coordinate(set, "elevation", CoordinateKind::Rotation);
+    let bound = Depend {
+        passive: elevation.into(),
+        driver: abduction.into(),
+        lower: Some(lines(&table)),
+        upper: None,
+    };
+    let held = b.depend(set, "bound", bound);
+    let turn = b.rotate(set, "turn", held, Vec3::X);
+    b.output(set, clavicle, turn);
+    // The one-to-one form is a map of the same table.
+    let follower = b.coordinate(set, "follower", CoordinateKind::Rotation);
+    let led = b.map(set, "led", abduction, lines(&table));
+    b.follow(follower, led);
+    let model = b.build().unwrap();
+    let program = Program::compile(&model);
+    let mut pose = Pose::new(&program);
+    let mut pose_at = |abduction: f64, elevation: f64, mode| {
+        let asked = [abduction.to_radians(), elevation.to_radians(), 0.0];
+        program.evaluate(&asked, mode, &mut pose).unwrap();
+        let turned = pose.segment(clavicle).linear;
+        let effective = pose.effective();
+        assert!((turned.y.z.atan2(turned.y.y) - effective[1]).abs() < 1e-15);
+        [effective[1].to_degrees(), effective[2].to_degrees(), pose.limit_row(0).to_degrees()]
+    };
+    for (abduction, least) in table {
+        // Pressed down it stops at the bound, lifted it goes where it is asked.
+        let [low, led, _] = pose_at(abduction, -40.0, Mode::Posed);
+        assert!((low - least).abs() < 1e-13 && (led - least).abs() < 1e-13, "{low} {led}");
+        let [high, ..] = pose_at(abduction, 30.0, Mode::Posed);
+        assert!((high - 30.0).abs() < 1e-13);
+        // In open mode it passes, and a row says by how much it is too low.
+        let [open, _, row] = pose_at(abduction, -40.0, Mode::Open);
+        assert!((open + 40.0).abs() < 1e-13 && (row - (-40.0 - least)).abs() < 1e-13);
+    }
+    // Between two points of the table it runs straight.
+    let [middle, ..] = pose_at(90.0, -40.0, Mode::Posed);
+    assert!((middle - 0.5 * (-6.7 + 4.85)).abs() < 1e-13, "{middle}");
 }

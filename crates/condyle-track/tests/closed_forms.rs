@@ -150,3 +150,43 @@ fn a_quaternion_ball_turns_to_its_markers_from_any_start() {
         assert!(truth.angle_to(q.into()) < 1e-5, "{turn:?}: {q:?}");
     }
 }
+
+#[test]
+fn markers_below_a_scale_find_its_factor() {
+    // Stretched along x by s; a segment that hangs at (1, 0) and is turned by t is stretched with it:
+    // its point (x, y) is at (s·(1 + x cos t - y sin t), x sin t + y cos t).
+    use condyle_model::Component;
+    use condyle_model::component::{Along, Scale};
+    let mut b = ModelBuilder::new("stretch");
+    let bone = b.segment("bone", None);
+    let set = b.joint_set("joint");
+    let factor = b.coordinate(set, "factor", CoordinateKind::Scale);
+    let scale = Scale { factor: factor.into(), along: Along::Axis(Vec3::X) };
+    let motion = b.component(set, "stretch", Component::Scale(scale));
+    b.output(set, bone, motion);
+    let tip = b.segment("tip", Some(bone));
+    b.place_joint(tip, Vec3::X);
+    b.hinge("hinge", tip, "angle", Vec3::Z);
+    b.marker("near", Some(bone), Vec3::new(0.5, 0.2, 0.0));
+    b.marker("far", Some(tip), Vec3::new(0.3, 0.1, 0.0));
+    b.marker("farther", Some(tip), Vec3::new(0.0, 0.4, 0.0));
+    let model = b.build().unwrap();
+    let (s, t) = (1.3f64, 0.4f64);
+    let hung = |x: f64, y: f64| {
+        [s * (1.0 + x * t.cos() - y * t.sin()), x * t.sin() + y * t.cos(), 0.0]
+    };
+    let targets = [[0.5 * s, 0.2, 0.0], hung(0.3, 0.1), hung(0.0, 0.4)];
+    let tasks = Tasks {
+        markers: (0..3).map(|marker| MarkerTask { marker, weight: 1.0 }).collect(),
+        coordinates: vec![],
+        closure_weight: None,
+    };
+    let tracker = Tracker::new(&model, tasks, Options { tolerance: 1e-12, ..Options::default() });
+    let mut scratch = Scratch::new(&tracker);
+    let seen: Vec<Option<[f64; 3]>> = targets.into_iter().map(Some).collect();
+    let answer = tracker.solve_frame(&mut scratch, &seen, 0, &[]);
+    assert_eq!(answer.status, FrameStatus::Solved);
+    // The tiny prior towards the defaults leaves its trace.
+    assert!((answer.coordinates[0] - s).abs() < 1e-6, "{:?}", answer.coordinates);
+    assert!((answer.coordinates[1] - t).abs() < 1e-6, "{:?}", answer.coordinates);
+}

@@ -46,8 +46,8 @@
 //! assert!((flexion - f64::atan2(0.20, 0.35)).abs() < 1e-5);
 //! ```
 //!
-//! Files are opened by [`open`], motions are tied to a model by [`motion`], animated scenes made by
-//! [`scene`]. The `condyle` command is these calls and a printer.
+//! Files are opened by [`open`], models that come along are in [`shipped`], motions are tied to a
+//! model by [`motion`], animated scenes made by [`scene`]. The `condyle` command is these calls and a printer.
 
 pub mod figure;
 pub mod lint;
@@ -55,6 +55,7 @@ pub mod matching;
 pub mod motion;
 pub mod open;
 pub mod scene;
+pub mod shipped;
 pub mod tracking;
 
 pub use condyle_formats as formats;

@@ -1,8 +1,9 @@
 //! Files by path, with errors and warnings that carry the path.
 
+use crate::shipped;
 use condyle_formats::document::{self, Document};
 use condyle_formats::opensim::{model as osim, setup};
-use condyle_formats::{Diagnostic, Error, Place, Read, Recording, Table, csv, sto, trc};
+use condyle_formats::{Diagnostic, Error, Place, Read, Recording, Table, csv, nearest, sto, trc};
 use condyle_model::Model;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -38,6 +39,8 @@ pub enum Cause {
         /// The endings that would do.
         known: &'static str,
     },
+    /// It is no file, and a word that might be the name of a shipped model, but none has it.
+    Unknown,
 }
 
 impl fmt::Display for OpenError {
@@ -52,6 +55,16 @@ impl fmt::Display for OpenError {
             }
             Cause::Format { wanted, known } => {
                 write!(f, "{path}: the ending names no format for {wanted} (known are {known})")
+            }
+            Cause::Unknown => {
+                let near = self.path.to_str().and_then(|name| nearest(name, shipped::names()));
+                let help = near.map_or(String::new(), |near| format!("did you mean `{near}`? "));
+                let names: Vec<&str> = shipped::names().collect();
+                let names = names.join(", ");
+                write!(
+                    f,
+                    "`{path}` is neither a file nor a shipped model ({help}shipped are {names})"
+                )
             }
         }
     }
@@ -102,23 +115,31 @@ fn wrong<T>(path: &Path, wanted: &'static str, known: &'static str) -> Result<T,
     Err(OpenError { path: path.to_owned(), cause: Cause::Format { wanted, known } })
 }
 
-/// Opens a model of any format.
+/// Opens a model of any format. Where there is no such file, the name of a [`shipped`] model does.
 ///
 /// # Errors
 /// [`OpenError`] with the path, and the line where there is one.
 pub fn model(path: &Path) -> Result<Read<Model>, OpenError> {
     match ending(path).as_str() {
+        "" if shipped::asked(path).is_some() => Ok(document(path)?.map(|document| document.model)),
         "osim" | "xml" => read_with(path, osim::read),
         "toml" => Ok(document(path)?.map(|document| document.model)),
         _ => wrong(path, "a model", ".osim, .toml"),
     }
 }
 
-/// Opens a model document with all that it includes, from their places relative to it.
+/// Opens a model document with all that it includes, from their places relative to it. Where there
+/// is no such file, the name of a [`shipped`] model does.
 ///
 /// # Errors
 /// [`OpenError`] with the path and everything that is wrong.
 pub fn document(path: &Path) -> Result<Read<Document>, OpenError> {
+    if let Some(name) = shipped::asked(path) {
+        let text = shipped::text(name).unwrap_or_default().to_owned();
+        let wrong = |cause| OpenError { path: path.to_owned(), cause };
+        let read = shipped::document(name).ok_or_else(|| wrong(Cause::Unknown))?;
+        return read.map_err(|errors| wrong(Cause::Document { text, errors }));
+    }
     let text = utf8(path)?;
     let mut include = |name: &str| {
         utf8(&beside(path, name)).map_err(|error| match error.cause {

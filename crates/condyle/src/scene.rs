@@ -1,52 +1,80 @@
 //! A model in motion as a scene that any viewer opens.
 
 use crate::motion::Motion;
-use condyle_formats::Recording;
 use condyle_formats::glb::{
     Finish, LocalPose, MarkerTrack, Scene, SceneNode, Shape, Track, UpAxis,
 };
-use condyle_math::{Affine, Quat, Vec3};
+use condyle_formats::{Diagnostic, Read, Recording};
+use condyle_math::{Affine, Vec3};
 use condyle_model::{Mode, Model, Pose, Program, SegmentId};
+use std::collections::BTreeSet;
+
+/// Bones as simple shapes, the motion's coordinates taken as they are: [`baked`] in open mode,
+/// without its warnings.
+pub fn scene(model: &Model, motion: &Motion, markers: Option<(&Recording, &[usize])>) -> Scene {
+    baked(model, motion, Mode::Open, markers).value
+}
 
 /// Bones as simple shapes: from each segment's origin to where its children hang, with a ball at
 /// every joint.
 ///
-/// Segments keep their names and their tree, so the file can be driven further in Blender. Rigid
-/// motion only is written: translation and rotation of every segment in its parent.
-pub fn scene(model: &Model, motion: &Motion, markers: Option<(&Recording, &[usize])>) -> Scene {
+/// Segments keep their names and their tree, so the file can be driven further in Blender: joint
+/// sets are worked out, and what is left are plain bones, each with its place, turn and size in its
+/// parent at every time. In posed mode limits hold. Without frames the model stands at its defaults.
+///
+/// # Warnings
+/// `scene/shear` where segments are sheared, or stretched along a direction that is none of their
+/// own axes: a node cannot hold that, and gets the nearest place that it can
+/// ([`LocalPose::nearest`]).
+pub fn baked(
+    model: &Model,
+    motion: &Motion,
+    mode: Mode,
+    markers: Option<(&Recording, &[usize])>,
+) -> Read<Scene> {
     let program = Program::compile(model);
     let mut pose = Pose::new(&program);
+    let mut lost = Lost::default();
     let order = model.parents_first();
     let mut node_of = vec![0usize; order.len()];
     for (node, id) in order.iter().enumerate() {
         node_of[id.index()] = node;
     }
-    let rest = model.defaults();
     let mut tracks: Vec<Track> = (0..order.len())
         .map(|node| Track { node, poses: Vec::with_capacity(motion.frames.len()) })
         .collect();
-    let evaluated = program.evaluate(&rest, Mode::Open, &mut pose);
+    let evaluated = program.evaluate(&model.defaults(), mode, &mut pose);
     debug_assert!(evaluated.is_ok(), "defaults have the model's length");
+    // A scene in motion rests where its first frame is.
+    let rest_counts = motion.frames.is_empty();
     let nodes = order
         .iter()
-        .map(|&id| SceneNode {
-            name: model.segment(id).name.clone(),
-            parent: model.segment(id).parent.map(|p| node_of[p.index()]),
-            rest: local(model, &pose, id),
-            shapes: shapes(model, id),
+        .map(|&id| {
+            let (rest, shear) = local(model, &pose, id);
+            if rest_counts {
+                lost.note(id, None, shear);
+            }
+            SceneNode {
+                name: model.segment(id).name.clone(),
+                parent: model.segment(id).parent.map(|p| node_of[p.index()]),
+                rest,
+                shapes: shapes(model, id),
+            }
         })
         .collect();
-    for frame in &motion.frames {
-        if program.evaluate(frame, Mode::Open, &mut pose).is_ok() {
+    for (frame, stored) in motion.frames.iter().enumerate() {
+        if program.evaluate(stored, mode, &mut pose).is_ok() {
             for (track, &id) in tracks.iter_mut().zip(&order) {
-                track.poses.push(local(model, &pose, id));
+                let (place, shear) = local(model, &pose, id);
+                lost.note(id, Some(frame), shear);
+                track.poses.push(place);
             }
         }
     }
     let markers = markers.map_or_else(Vec::new, |(recording, labels)| {
         marker_tracks(recording, labels, &motion.times)
     });
-    Scene {
+    let scene = Scene {
         name: model.name().to_owned(),
         up: match model.up() {
             condyle_model::UpAxis::Y => UpAxis::Y,
@@ -57,6 +85,50 @@ pub fn scene(model: &Model, motion: &Motion, markers: Option<(&Recording, &[usiz
         tracks: if motion.frames.is_empty() { vec![] } else { tracks },
         markers,
         ..Scene::default()
+    };
+    Read { value: scene, warnings: lost.warning(model).into_iter().collect() }
+}
+
+/// The shear that nodes cannot hold.
+#[derive(Default)]
+struct Lost {
+    segments: BTreeSet<SegmentId>,
+    worst: f64,
+    /// Where the worst is: the segment, and the frame if there are any.
+    at: Option<(SegmentId, Option<usize>)>,
+}
+
+/// Less than single precision can tell.
+const LEAST_SHEAR: f64 = 1e-7;
+
+impl Lost {
+    fn note(&mut self, id: SegmentId, frame: Option<usize>, shear: f64) {
+        if shear > LEAST_SHEAR {
+            self.segments.insert(id);
+        }
+        if shear > self.worst {
+            (self.worst, self.at) = (shear, Some((id, frame)));
+        }
+    }
+
+    fn warning(&self, model: &Model) -> Option<Diagnostic> {
+        let (id, frame) = self.at.filter(|_| !self.segments.is_empty())?;
+        let mut named: Vec<String> =
+            self.segments.iter().take(4).map(|&s| format!("`{}`", model.segment(s).name)).collect();
+        if self.segments.len() > named.len() {
+            named.push(format!("{} more", self.segments.len() - named.len()));
+        }
+        let frame = frame.map_or(String::new(), |frame| format!(" in frame {frame}"));
+        let message = format!(
+            "sheared segments are written without their shear: {}; at worst, `{}`{frame}, points are \
+             off by up to {:.2} % of their distance from its origin",
+            named.join(", "),
+            model.segment(id).name,
+            100.0 * self.worst,
+        );
+        let help = "a node has sizes along its own axes only: give the joint frame of the segment \
+                    the axes of its scale, on both sides";
+        Some(Diagnostic::new("scene/shear", message).with_help(help))
     }
 }
 
@@ -74,13 +146,14 @@ fn marker_tracks(recording: &Recording, labels: &[usize], times: &[f64]) -> Vec<
         .collect()
 }
 
-fn local(model: &Model, pose: &Pose, id: SegmentId) -> LocalPose {
+/// Where a segment is in its parent, and the shear that a node leaves out. The parent may be
+/// stretched, so its inverse is the general one.
+fn local(model: &Model, pose: &Pose, id: SegmentId) -> (LocalPose, f64) {
     let parent = pose.frame(model.segment(id).parent);
-    let local: Affine = parent.rigid_inverse() * pose.segment(id);
-    LocalPose {
-        translation: local.translation.to_array(),
-        rotation: Quat::from_mat3(local.linear).to_array(),
-    }
+    let child = pose.segment(id);
+    let back = parent.linear.inverse();
+    let step = child.translation - parent.translation;
+    LocalPose::nearest(Affine::new(back * child.linear, back * step))
 }
 
 /// A joint ball at the segment's own joint, and a bone to each child's.
@@ -119,4 +192,126 @@ fn shapes(model: &Model, id: SegmentId) -> Vec<Shape> {
     let radius = (0.06 * longest).clamp(0.006, 0.02);
     shapes.push(Shape::Ball { at: own.to_array(), radius, finish: Finish::Joint });
     shapes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use condyle_formats::document;
+
+    /// A neck that stretches at constant volume, and turns; a head that turns under it; a hat that
+    /// leans.
+    const FIGURE: &str = r#"
+        condyle = 1
+        kind = "model"
+        [segment.neck]
+        at = [0, 1.4, 0]
+        turn = [0, 0, 0.2]
+        [joint_set.neck]
+        coordinate.stretch = { kind = "scale" }
+        coordinate.nod = {}
+        component.long.scale = { factor = "stretch", axis = [0, 1, 0], volume = true }
+        component.turn.rotate = { angle = "nod", axis = [0, 0, 1] }
+        output.neck = ["turn", "long"]
+        [segment.head]
+        parent = "neck"
+        at = [0.01, 0.1, 0]
+        [joint.head]
+        type = "euler"
+        order = "zxy"
+        segment = "head"
+        [segment.hat]
+        parent = "head"
+        at = [0, 0.2, 0]
+        [joint.hat]
+        type = "shear"
+        segment = "hat"
+        along = [1, 0, 0]
+        across = [0, 1, 0]
+    "#;
+
+    fn figure() -> Model {
+        document::read(FIGURE, &mut |_| Err("it stands alone".into())).expect("a model").value.model
+    }
+
+    fn motion(frames: &[[f64; 6]]) -> Motion {
+        let times = (0..frames.len()).map(|frame| frame as f64).collect();
+        Motion { times, frames: frames.iter().map(|f| f.to_vec()).collect() }
+    }
+
+    /// The transform that a viewer makes of a place.
+    fn seen(place: &LocalPose) -> Affine {
+        let r = condyle_math::Quat::from(place.rotation).to_mat3();
+        let [x, y, z] = place.scale;
+        let linear = condyle_math::Mat3::from_columns(r.x * x, r.y * y, r.z * z);
+        Affine::new(linear, Vec3::from(place.translation))
+    }
+
+    #[test]
+    fn nodes_multiply_to_the_pose_of_every_segment() {
+        let model = figure();
+        // stretch, nod, the three turns of the head, the lean of the hat.
+        let motion = motion(&[
+            [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            [1.7, 0.4, 0.3, -0.2, 0.9, 0.0],
+            [0.6, -0.3, -0.5, 0.4, -1.1, 0.0],
+        ]);
+        let baked = baked(&model, &motion, Mode::Open, None);
+        assert_eq!(baked.warnings, []);
+        let program = Program::compile(&model);
+        let mut pose = Pose::new(&program);
+        for (frame, stored) in motion.frames.iter().enumerate() {
+            program.evaluate(stored, Mode::Open, &mut pose).expect("buffers of this program");
+            let mut world: Vec<Affine> = vec![];
+            for (node, track) in baked.value.nodes.iter().zip(&baked.value.tracks) {
+                let parent = node.parent.map_or(Affine::IDENTITY, |p| world[p]);
+                world.push(parent * seen(&track.poses[frame]));
+                let id = model.find_segment(&node.name).expect("nodes are called as segments");
+                let expected = pose.segment(id).to_rows();
+                let found = world[world.len() - 1].to_rows();
+                for (found, expected) in found.iter().zip(expected) {
+                    assert!((found - expected).abs() < 1e-14, "{} in frame {frame}", node.name);
+                }
+            }
+        }
+        // The neck's sizes are s along y and 1/√s across.
+        let thin = 1.7f64.sqrt().recip();
+        for (found, expected) in baked.value.tracks[0].poses[1].scale.iter().zip([thin, 1.7, thin])
+        {
+            assert!((found - expected).abs() < 1e-15, "{found}");
+        }
+    }
+
+    #[test]
+    fn a_shear_is_said_with_its_size() {
+        let model = figure();
+        let lean: f64 = 0.3;
+        let upright = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let motion = motion(&[upright, [1.0, 0.1, 0.2, 0.0, 0.0, lean]]);
+        let baked = baked(&model, &motion, Mode::Open, None);
+        // The polar decomposition of I + s·x·yᵀ leaves sin(atan(s/2)) twice beside the diagonal.
+        let left = 100.0 * 2f64.sqrt() * (lean / 2.0).atan().sin();
+        let said: Vec<String> = baked.warnings.iter().map(|w| w.message.clone()).collect();
+        let expected = format!(
+            "sheared segments are written without their shear: `hat`; at worst, `hat` in frame 1, \
+             points are off by up to {left:.2} % of their distance from its origin"
+        );
+        assert_eq!(said, [expected]);
+        assert_eq!(baked.warnings[0].code, "scene/shear");
+    }
+
+    #[test]
+    fn limits_hold_in_posed_mode() {
+        let text =
+            FIGURE.replace("coordinate.nod = {}", "coordinate.nod = { range = [-0.1, 0.5] }");
+        let model = document::read(&text, &mut |_| Err("it stands alone".into()));
+        let model = model.expect("a model").value.model;
+        let far = motion(&[[1.0, 0.9, 0.0, 0.0, 0.0, 0.0]]);
+        for (mode, nod) in [(Mode::Open, 0.9), (Mode::Posed, 0.5)] {
+            let baked = baked(&model, &far, mode, None).value;
+            let turn = baked.tracks[0].poses[0].rotation[2];
+            // The joint itself is turned by 0.2.
+            assert!((turn - ((nod + 0.2) / 2.0f64).sin()).abs() < 1e-15, "{mode:?}");
+        }
+    }
 }

@@ -1,26 +1,41 @@
 //! `condyle convert`: a file in another format.
 
+mod poses;
+
 use super::Outcome;
 use crate::failure::{Failure, warn_about, warned};
 use crate::motion_format::MotionFormat;
 use crate::output;
 use clap::{Args, ValueEnum};
-use condyle::formats::{AngleUnit, LengthUnit, Recording, Table, csv, document, sto, trc};
-use condyle::{Mode, Model, Motion, Pose, Program, open};
+use condyle::formats::{AngleUnit, LengthUnit, Recording, Table, csv, document, glb, sto, trc};
+use condyle::{Mode, Model, Motion, Pose, Program, open, scene, shipped};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(crate) struct Convert {
-    /// A motion (.mot, .sto, .csv), a model (.osim, .toml) or a marker recording (.trc).
+    /// A motion (.mot, .sto, .csv), poses (.json, as `fk` takes them), a model (.osim, .toml, or the
+    /// name of a shipped one) or a marker recording (.trc).
     input: PathBuf,
     /// Where to write; `-` is standard output and needs --to.
     output: PathBuf,
-    /// The model that a motion belongs to.
+    /// The model that a motion belongs to: a file, or the name of a shipped one.
+    ///
+    /// With it a motion can be baked to .glb: plain bones, each with its place, turn and size in its
+    /// parent at every frame, for programs that know no joint sets.
     #[arg(long, value_name = "M")]
     model: Option<PathBuf>,
+    /// First move coordinates to the nearest posture that the model allows.
+    #[arg(long, value_enum, default_value_t = Limits::Off)]
+    limits: Limits,
     /// The format of the output, if not by its ending.
     #[arg(long, value_enum)]
     to: Option<Target>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Limits {
+    Off,
+    On,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -41,8 +56,8 @@ enum Target {
 
 /// The combinations that exist, for the message about one that does not.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
-                     to .glb (an animation) or .trc (the model's markers); a model (.osim, .toml) to .toml or \
-                     .glb; \
+                     to .glb (an animation) or .trc (the model's markers), and poses (.json) to all \
+                     of these; a model (.osim, .toml, or a shipped one by name) to .toml or .glb; \
                      a recording (.trc) to .trc or .csv";
 
 impl Target {
@@ -91,19 +106,15 @@ impl Convert {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
         let target = Target::of(&self.output, self.to)?;
         let bytes = match open::ending(&self.input).as_str() {
-            "mot" | "sto" | "csv" if target != Target::Toml => self.motion_as(target)?,
-            "toml" if target == Target::Toml => {
-                // A document is saved as it was written.
-                warned(&self.input, open::document(&self.input)?).source.into_bytes()
-            }
+            "mot" | "sto" | "csv" | "json" if target != Target::Toml => self.motion_as(target)?,
             "osim" | "xml" if target == Target::Toml => {
                 let model = warned(&self.input, open::model(&self.input)?);
                 document::write(&model).into_bytes()
             }
-            "osim" | "xml" | "toml" if target == Target::Glb => {
-                let model = warned(&self.input, open::model(&self.input)?);
-                MotionFormat::Glb.encode(&model, &Motion::default(), &self.name(), None)?
-            }
+            "toml" if target == Target::Toml => self.document()?.into_bytes(),
+            "" if target == Target::Toml && !self.input.exists() => self.document()?.into_bytes(),
+            "osim" | "xml" | "toml" if target == Target::Glb => self.still()?,
+            "" if target == Target::Glb && !self.input.exists() => self.still()?,
             "trc" if matches!(target, Target::Trc | Target::Csv) => self.recording_as(target)?,
             "trc" => {
                 return Err(self.unknown(
@@ -131,26 +142,66 @@ impl Convert {
         self.input.file_stem().unwrap_or_default().to_string_lossy().into_owned()
     }
 
+    fn mode(&self) -> Mode {
+        if self.limits == Limits::On { Mode::Posed } else { Mode::Open }
+    }
+
+    /// A document as it was written; a shipped one such that it can be read anywhere.
+    fn document(&self) -> Result<String, Failure> {
+        let name = self.input.to_str().filter(|_| !self.input.exists());
+        if let Some(Ok(text)) = name.and_then(shipped::standalone) {
+            return Ok(text);
+        }
+        Ok(warned(&self.input, open::document(&self.input)?).source)
+    }
+
+    /// A model at rest as a scene.
+    fn still(&self) -> Result<Vec<u8>, Failure> {
+        let model = warned(&self.input, open::model(&self.input)?);
+        self.scene(&model, &Motion::default())
+    }
+
+    /// A motion as a scene of plain bones. Limits are applied here, since not all of them can be said
+    /// by coordinates.
+    fn scene(&self, model: &Model, motion: &Motion) -> Result<Vec<u8>, Failure> {
+        let scene = warned(&self.output, scene::baked(model, motion, self.mode(), None));
+        glb::write(&scene).map_err(|error| Failure::new(error.to_string()))
+    }
+
     fn motion_as(&self, target: Target) -> Result<Vec<u8>, Failure> {
+        let poses = open::ending(&self.input) == "json";
         let Some(model_path) = &self.model else {
-            if matches!(target, Target::Glb | Target::Trc) {
-                let what = format!("{}: without --model", self.input.display());
-                return Err(Failure::new(format!(
-                    "{what} a motion cannot become .{} ({KNOWN})",
-                    target.name()
-                )));
+            let what = format!("{}: without --model", self.input.display());
+            if poses || matches!(target, Target::Glb | Target::Trc) {
+                let from = if poses { "poses" } else { "a motion" };
+                let to = target.name();
+                return Err(Failure::new(format!("{what} {from} cannot become .{to} ({KNOWN})")));
+            }
+            if self.limits == Limits::On {
+                return Err(Failure::new(format!("{what} there are no limits to apply")));
             }
             let table = warned(&self.input, open::table(&self.input)?);
             return rewritten(&self.input, table, target);
         };
         let model = warned(model_path, open::model(model_path)?);
-        let table = warned(&self.input, open::table(&self.input)?);
-        let (mut motion, warnings) = Motion::from_table(&model, &table);
-        warn_about(&self.input, &warnings);
-        motion.make_effective(&Program::compile(&model), Mode::Open);
+        let mut motion = if poses {
+            poses::read(&self.input, &model)?.motion
+        } else {
+            let table = warned(&self.input, open::table(&self.input)?);
+            let (motion, warnings) = Motion::from_table(&model, &table);
+            warn_about(&self.input, &warnings);
+            motion
+        };
+        if target == Target::Glb {
+            return self.scene(&model, &motion);
+        }
+        if target == Target::Trc {
+            return self.virtual_markers(&model, &motion);
+        }
+        motion.make_effective(&Program::compile(&model), self.mode());
         match target.motion() {
             Some(format) => format.encode(&model, &motion, &self.name(), None),
-            None => self.virtual_markers(&model, &motion),
+            None => Err(self.unknown(target, "")),
         }
     }
 
@@ -182,7 +233,7 @@ impl Convert {
         let mut positions = Vec::with_capacity(motion.frames.len() * model.markers().len());
         for frame in &motion.frames {
             program
-                .evaluate(frame, Mode::Open, &mut pose)
+                .evaluate(frame, self.mode(), &mut pose)
                 .map_err(|error| Failure::new(error.to_string()))?;
             for marker in model.markers() {
                 let point = (pose.frame(marker.segment) * marker.point).to_array();

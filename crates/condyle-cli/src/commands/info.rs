@@ -18,7 +18,8 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(crate) struct Info {
-    /// A model, a marker recording, a motion or another table, or a setup of inverse kinematics.
+    /// A model (a file, or the name of a shipped one), a marker recording, a motion or another table,
+    /// or a setup of inverse kinematics.
     file: PathBuf,
     /// One JSON document on standard output, in radians and metres.
     #[arg(long)]
@@ -71,6 +72,8 @@ impl Content {
 
 fn content(path: &Path) -> Result<Read<Content>, Failure> {
     Ok(match open::ending(path).as_str() {
+        // A word that is no file is the name of a shipped model, or a mistake that tells them.
+        "" if !path.exists() => open::model(path)?.map(Content::Model),
         "osim" | "toml" => open::model(path)?.map(Content::Model),
         "trc" => open::recording(path)?.map(Content::Recording),
         "mot" | "sto" | "csv" => open::table(path)?.map(Content::Table),

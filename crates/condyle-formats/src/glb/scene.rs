@@ -12,18 +12,21 @@ pub enum UpAxis {
     Z,
 }
 
-/// Where a node is in its parent.
+/// Where a node is in its parent: sized first, then turned, then moved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LocalPose {
     /// Metres.
     pub translation: [f64; 3],
     /// Unit quaternion x, y, z, w; it is normalised on writing, and its sign is free.
     pub rotation: [f64; 4],
+    /// Factors along the node's own axes, without unit; 1 changes nothing.
+    pub scale: [f64; 3],
 }
 
 impl LocalPose {
     /// Where the parent is.
-    pub const IDENTITY: Self = Self { translation: [0.0; 3], rotation: [0.0, 0.0, 0.0, 1.0] };
+    pub const IDENTITY: Self =
+        Self { translation: [0.0; 3], rotation: [0.0, 0.0, 0.0, 1.0], scale: [1.0; 3] };
 }
 
 impl Default for LocalPose {

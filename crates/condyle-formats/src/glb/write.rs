@@ -20,7 +20,7 @@ use crate::diagnostic::Error;
 ///
 /// `glb/parent` if a node's parent does not come before it, `glb/track` if a track has no node,
 /// shares one, or is not as long as the times, `glb/time` if times are not finite and rising,
-/// `glb/pose` if a place is not finite or a rotation has no length, `glb/shape` if a shape's
+/// `glb/pose` if a place or size is not finite or a rotation has no length, `glb/shape` if a shape's
 /// numbers are not finite or not positive, `glb/size` if the file would exceed 4 GiB.
 ///
 /// ```
@@ -145,12 +145,12 @@ fn check_length(found: usize, scene: &Scene, name: &str) -> Result<(), Error> {
 
 fn check_pose(pose: &LocalPose, name: &str, when: &str) -> Result<(), Error> {
     // f32 holds no more than 3.4e38; nothing posed is a million kilometres away.
-    let placed = pose.translation.iter().all(|x| x.abs() < 1e9);
-    if placed && unit(pose.rotation).is_some() {
+    let held = |numbers: &[f64; 3]| numbers.iter().all(|x| x.abs() < 1e9);
+    if held(&pose.translation) && held(&pose.scale) && unit(pose.rotation).is_some() {
         return Ok(());
     }
     Err(Error::new("glb/pose", format!("`{name}` has {pose:?} {when}"))
-        .with_help("a place is finite, a rotation a unit quaternion x, y, z, w"))
+        .with_help("places and sizes are finite, a rotation is a unit quaternion x, y, z, w"))
 }
 
 /// A quaternion made of length 1; none if it has no length.
@@ -219,6 +219,7 @@ impl Writer<'_> {
                 mesh,
                 translation: Some(rest.translation.map(|x| x as f32)),
                 rotation: unit(rest.rotation).map(UnitQuaternion),
+                scale: Some(rest.scale.map(|x| x as f32)).filter(|s| *s != [1.0; 3]),
                 ..Node::default()
             });
             indices.push(built);
@@ -334,6 +335,9 @@ impl Writer<'_> {
             self.channel(&mut animation, &mut clock, &kept, *node, path, &places);
             let path = Property::Rotation;
             self.channel(&mut animation, &mut clock, &kept, *node, path, &rotations);
+            let sizes: Vec<[f32; 3]> = poses().map(|p| p.scale.map(|x| x as f32)).collect();
+            let path = Property::Scale;
+            self.channel(&mut animation, &mut clock, &kept, *node, path, &sizes);
         }
         for marker in markers {
             let path = Property::Translation;

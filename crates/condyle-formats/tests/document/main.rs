@@ -8,6 +8,7 @@ mod mirror;
 mod numbers;
 mod reading;
 mod round_trip;
+mod skeletons;
 mod shapes;
 mod wrong;
 
