@@ -1,11 +1,9 @@
 //! The shrug of Shao & Ng-Thow-Hing 2003, figure 3: shoulder bones lift, the arm keeps hanging.
 
-use condyle_math::{Quat, Vec3};
 use condyle_math::function::{Curve, Function, PiecewiseLinear};
+use condyle_math::{Quat, Vec3};
 use condyle_model::component::{Compensate, Depend};
-use condyle_model::{
-    CoordinateKind, Mode, Model, ModelBuilder, Pose, Program, SegmentId,
-};
+use condyle_model::{CoordinateKind, Mode, Model, ModelBuilder, Pose, Program, SegmentId};
 
 /// Thorax, clavicle, scapula and humerus, each a hinge; the thorax turns too.
 fn shoulder(weight: Option<f64>) -> (Model, [SegmentId; 4]) {

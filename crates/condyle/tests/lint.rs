@@ -3,7 +3,11 @@
 use condyle::lint::{self, Finding, Severity};
 use condyle::math::function::{Function, PiecewiseLinear, SimmSpline};
 use condyle::math::{Affine, Vec3};
+use condyle::model::component::{
+    Component, Contact, ContactPair, Gliding, JointCone, Source, Swinging,
+};
 use condyle::model::model::{Closure, Condition};
+use condyle::model::{Cone, ConePoint, Projection};
 use condyle::{CoordinateKind, Model, ModelBuilder, Range};
 
 /// What is found in a model that its builder accepts.
@@ -426,4 +430,76 @@ fn warnings_of_readers_come_along() {
         codes,
         [(Severity::Warning, "osim/unknown-constraint"), (Severity::Note, "xml/prefix")]
     );
+}
+
+/// A ball joint of three angles in a square cone, each side 0.6 rad from rest, with these ranges.
+fn in_a_cone(reach: f64, dent: bool) -> ModelBuilder {
+    let mut b = ModelBuilder::new("ball");
+    let arm = b.segment("arm", None);
+    let set = b.joint_set("shoulder");
+    let angles = ["a", "b", "c"].map(|name| {
+        let id = b.coordinate(set, name, CoordinateKind::Rotation);
+        b.coordinate_mut(id).range = degrees(-reach, reach);
+        Source::from(id)
+    });
+    let axes = [Vec3::Z, Vec3::X, Vec3::Y];
+    let mut corners = vec![(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
+    if dent {
+        // The side towards x is pulled in almost to rest.
+        corners.insert(0, (0.1, 0.0));
+    }
+    let points = corners
+        .into_iter()
+        .map(|(x, z): (f64, f64)| ConePoint { direction: Vec3::new(x, -1.4, z), twist: None });
+    let cone = Cone::new(-Vec3::Y, None, points.collect(), 0, Projection::Nearest).unwrap();
+    let of = Swinging::Angles(angles, axes);
+    let Source::Output(cone, _) = b.component(set, "cone", Component::Cone(JointCone { of, cone }))
+    else {
+        unreachable!("a component has outputs")
+    };
+    let turns = (0..3)
+        .map(|k| b.rotate(set, &format!("turn_{k}"), Source::Output(cone, k), axes[k as usize]));
+    let turns = turns.collect();
+    let motion = b.product(set, "motion", turns);
+    b.output(set, arm, motion);
+    b
+}
+
+#[test]
+fn a_cone_whose_projection_jumps() {
+    // Convex, and far from a quarter turn beyond it: the nearest point moves smoothly.
+    sound(in_a_cone(60.0, false));
+    // In a dent two sides can be equally near.
+    let finding = only(in_a_cone(60.0, true), Severity::Warning, "lint/cone-jump");
+    assert_eq!(finding.subjects, ["a", "b", "c"]);
+    // Ranges that stay inside the dented cone never project.
+    sound(in_a_cone(2.0, true));
+}
+
+#[test]
+fn a_contact_that_floats() {
+    let ribs = |x: f64| {
+        let mut b = ModelBuilder::new("ribs");
+        let thorax = b.segment("thorax", None);
+        let scapula = b.segment("scapula", Some(thorax));
+        b.place_joint(scapula, Vec3::new(x, 0.0, 0.0));
+        let pair = ContactPair { first: Vec3::Y * 0.1, second: Vec3::Z * 0.1, at: [0.0; 2] };
+        let law = Gliding::new(Affine::IDENTITY, Vec3::new(0.1, 0.1, 0.1), Vec3::Z, vec![pair]);
+        let set = b.joint_set("glide");
+        let contact = Contact {
+            segment: scapula,
+            surface: thorax,
+            before: None,
+            drivers: vec![],
+            law: law.unwrap(),
+        };
+        let glide = b.component(set, "glide", Component::Contact(contact));
+        b.output(set, scapula, glide);
+        b
+    };
+    // Points 0.1 from the joint reach a ball of 0.1 about (0, 0, 0) from 0.1 away; from 0.25 away the
+    // second, across the axis, stays at √(0.25² + 0.1²) - 0.1 = 0.16926.
+    sound(ribs(0.1));
+    let finding = only(ribs(0.25), Severity::Warning, "lint/no-contact");
+    assert!(finding.message.contains("169.26 mm off"), "{}", finding.message);
 }

@@ -113,6 +113,23 @@ impl JointCone {
         (turned, moving)
     }
 
+    /// How near these numbers (radians, or x, y, z, w) are to where what they are moved to jumps, in
+    /// radians; infinite where they are legal.
+    ///
+    /// # Panics
+    /// If there are fewer than [`JointCone::len`] of them.
+    pub fn margin(&self, numbers: &[f64]) -> f64 {
+        let rotation = self.turned(numbers);
+        if let Swinging::Directions(..) = self.of {
+            let direction = rotation * self.cone.rest();
+            return match self.cone.contains(direction) {
+                true => f64::INFINITY,
+                false => self.cone.project(direction).margin,
+            };
+        }
+        self.cone.legal(rotation).margin
+    }
+
     /// The rotation of these numbers alone.
     fn turned(&self, numbers: &[f64]) -> Mat3 {
         let Some(axes) = self.axes() else { return self.rotation(numbers).0 };

@@ -3,6 +3,7 @@
 use crate::component::{
     Along, ConstantCurvature, Curve, Custom, Ellipsoid, Gliding, JointCone, Law, Pivot,
 };
+use crate::position::ComponentId;
 use condyle_math::function::{Function, FunctionOfSeveral};
 use condyle_math::{Affine, Scalar, Vec3};
 
@@ -147,6 +148,7 @@ pub(super) struct ConeCall {
 /// A contact with its registers.
 #[derive(Clone, Debug)]
 pub(super) struct ContactCall {
+    pub component: ComponentId,
     pub law: Gliding,
     /// The transform of the bone in the ellipsoid, before the contact turns it.
     pub frame: u32,

@@ -90,7 +90,7 @@ impl<S: Scalar> Pose<S> {
         self.transforms[self.base] = world;
     }
 
-    /// How the contact of that number (in the model's order, of those that move something) came out.
+    /// How a contact came out, by its number in [`Program::contacts`].
     pub fn contact(&self, number: usize) -> Option<ContactReport<S>> {
         let at = *self.reports.get(number)? as usize;
         let [a, b, c, d] = *self.scalars[at..].first_chunk()?;

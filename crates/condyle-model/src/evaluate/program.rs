@@ -2,7 +2,7 @@
 
 use super::derivative_plan::DerivativePlan;
 use super::instruction::Code;
-use crate::model::{CoordinateId, Model, SegmentId};
+use crate::model::{ComponentId, CoordinateId, Model, SegmentId};
 use std::fmt;
 
 /// Whether limits move the coordinates.
@@ -83,6 +83,12 @@ impl Program {
     /// [`Jacobian`]: super::Jacobian
     pub fn segment_directions(&self, segment: SegmentId) -> &[(u32, u32)] {
         self.plan.segment_entries(segment.index())
+    }
+
+    /// The contacts that move something: [`Pose::contact`](super::Pose::contact) reports on them by
+    /// their number in this list.
+    pub fn contacts(&self) -> impl ExactSizeIterator<Item = ComponentId> {
+        self.code.contacts.iter().map(|call| call.component)
     }
 
     /// Whether a segment hangs below a scale or a shear, so that its transform is not rigid.

@@ -11,6 +11,7 @@
 //! | `range` | limits that cross, that are none, that look like degrees; defaults outside them |
 //! | `domain` | functions used beyond their knots |
 //! | `coupling` | followers: ranges that leaders break, chains, coordinates that move nothing |
+//! | `limit` | cones whose projection jumps inside declared ranges, contacts that do not touch |
 //! | `rotation` | axes that coincide, at rest or inside a range |
 //! | `place` | far joints and markers, markers in one place |
 //! | `closure` | loops that are open in the default pose |
@@ -27,6 +28,7 @@
 mod closure;
 mod coupling;
 mod domain;
+mod limit;
 pub mod motion;
 mod names;
 mod place;
@@ -152,6 +154,7 @@ pub fn check(model: &Model, warnings: &[Diagnostic]) -> Vec<Finding> {
     rotation::check(&subject, &mut findings);
     place::check(&subject, &mut findings);
     closure::check(&subject, &mut findings);
+    limit::check(&subject, &mut findings);
     names::check(&subject, &mut findings);
     symmetry::check(&subject, &mut findings);
     if !subject.reach.finished() {

@@ -50,7 +50,7 @@ impl Compiler<'_> {
     }
 
     /// The turns that put a bone on its ellipsoid.
-    pub(super) fn contact(&mut self, contact: &Contact) -> u32 {
+    pub(super) fn contact(&mut self, component: ComponentId, contact: &Contact) -> u32 {
         let mut steps = vec![];
         self.fixed(contact.law.ellipsoid_in_surface().rigid_inverse(), &mut steps);
         for id in self.model.path_between(contact.surface, contact.segment) {
@@ -76,7 +76,8 @@ impl Compiler<'_> {
         let output = self.new_transform();
         let report = self.program.code.scalars as u32;
         self.program.code.scalars += 4;
-        let call = ContactCall { law: contact.law.clone(), frame, drivers, output, report };
+        let law = contact.law.clone();
+        let call = ContactCall { component, law, frame, drivers, output, report };
         self.program.code.contacts.push(call);
         let contact = self.program.code.contacts.len() as u32 - 1;
         self.program.code.instructions.push(Instruction::Contact { contact });

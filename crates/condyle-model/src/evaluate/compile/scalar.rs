@@ -107,7 +107,7 @@ impl Compiler<'_> {
                     self.compensations[id.index()] = Some(self.paths(compensate));
                 }
                 if let Component::Contact(contact) = component {
-                    self.contacts[id.index()] = Some(self.contact(contact));
+                    self.contacts[id.index()] = Some(self.contact(id, contact));
                 }
                 if self.readers[id.index()] > 1 {
                     let register = self.new_transform();

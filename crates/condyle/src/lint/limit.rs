@@ -1,0 +1,86 @@
+//! Limits of ball joints, and bones that should touch.
+
+use super::{Finding, Severity, Subject, amount, length, real_range};
+use condyle_model::CoordinateKind;
+use condyle_model::component::{Component, JointCone, Source, Swinging};
+
+/// A projection that jumps within this of a posture may do so in it: half a degree.
+const NEAR: f64 = 0.0087;
+
+/// Samples of each angle's range.
+const STEPS: usize = 13;
+
+/// A gap below this is rounding in a file: 0.01 mm.
+const TOUCHING: f64 = 1e-5;
+
+/// Cones whose projection may jump inside the declared ranges, contacts that do not touch at rest.
+pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+    for named in subject.model.components() {
+        if let Component::Cone(cone) = &named.component {
+            findings.extend(jump(subject, &named.name, cone));
+        }
+    }
+    for (number, id) in subject.program.contacts().enumerate() {
+        let Some(report) = subject.rest.contact(number) else { continue };
+        let gap =
+            report.gaps.into_iter().fold(0.0f64, |a, b| if b.abs() > a.abs() { b } else { a });
+        if gap.abs() > TOUCHING {
+            let name = &subject.model.components()[id.index()].name;
+            let side = if gap > 0.0 { "off" } else { "inside" };
+            findings.push(Finding::new(
+                Severity::Warning,
+                "lint/no-contact",
+                [name.clone()],
+                format!(
+                    "contact `{name}` stays {} {side} its ellipsoid at rest",
+                    length(gap.abs())
+                ),
+                "move its points or its ellipsoid until they meet, or accept that it floats",
+            ));
+        }
+    }
+}
+
+/// The posture inside the declared ranges that is nearest to a jump of the projection.
+fn jump(subject: &Subject<'_>, name: &str, cone: &JointCone) -> Option<Finding> {
+    let sources: &[Source] = match &cone.of {
+        Swinging::Angles(sources, _) => sources,
+        Swinging::Directions(sources, _) => sources,
+        Swinging::Orientation(_) => return None,
+    };
+    let mut ranges = vec![];
+    for source in sources {
+        let Source::Coordinate(id) = *source else { return None };
+        ranges.push((id, real_range(subject.model, id)?));
+    }
+    let mut worst = (f64::INFINITY, vec![]);
+    for sample in 0..STEPS.pow(ranges.len() as u32) {
+        let mut rest = sample;
+        let numbers = ranges.iter().map(|(_, (lower, upper))| {
+            let step = (rest % STEPS) as f64 / (STEPS - 1) as f64;
+            rest /= STEPS;
+            lower + (upper - lower) * step
+        });
+        let numbers: Vec<f64> = numbers.collect();
+        let margin = cone.margin(&numbers);
+        if margin < worst.0 {
+            worst = (margin, numbers);
+        }
+    }
+    if worst.0 > NEAR {
+        return None;
+    }
+    let at = ranges.iter().zip(&worst.1).map(|((id, _), value)| {
+        format!("`{}` {}", subject.key(*id), amount(CoordinateKind::Rotation, *value))
+    });
+    Some(Finding::new(
+        Severity::Warning,
+        "lint/cone-jump",
+        ranges.iter().map(|(id, _)| subject.key(*id)),
+        format!(
+            "what cone `{name}` makes of illegal angles jumps inside the declared ranges, near {}",
+            at.collect::<Vec<_>>().join(", ")
+        ),
+        "narrow the ranges so that they end nearer to the cone, or take projection = \"toward_rest\"",
+    ))
+}
