@@ -1,9 +1,9 @@
 //! The formats that a motion can be written in.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, warned};
 use clap::ValueEnum;
 use condyle::formats::{AngleUnit, Recording, csv, glb, sto};
-use condyle::{Model, Motion, open, scene};
+use condyle::{Mode, Model, Motion, open, scene};
 use std::path::Path;
 
 /// The formats that a motion can be written in.
@@ -69,7 +69,10 @@ impl MotionFormat {
                 table.angle_unit = AngleUnit::Radians;
                 Ok(csv::write(&table).map_err(fail)?.into_bytes())
             }
-            Self::Glb => glb::write(&scene::scene(model, motion, markers)).map_err(fail),
+            Self::Glb => {
+                let baked = scene::baked(model, motion, Mode::Open, markers);
+                glb::write(&warned(Path::new(name), baked)).map_err(fail)
+            }
         }
     }
 }

@@ -54,6 +54,7 @@ pub mod lint;
 pub mod matching;
 pub mod motion;
 pub mod open;
+pub mod scaling;
 pub mod scene;
 pub mod shipped;
 pub mod tracking;

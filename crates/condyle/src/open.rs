@@ -47,7 +47,14 @@ impl fmt::Display for OpenError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let path = self.path.display();
         match &self.cause {
-            Cause::Io(error) => write!(f, "{path}: {error}"),
+            Cause::Io(error) => {
+                write!(f, "{path}: {error}")?;
+                let name = self.path.to_str().and_then(|path| path.strip_suffix(".toml"));
+                match name.filter(|name| shipped::text(name).is_some()) {
+                    Some(name) => write!(f, " (`{name}` without an ending is a shipped model)"),
+                    None => Ok(()),
+                }
+            }
             Cause::Content(error) => write!(f, "{}", located(&self.path, error.diagnostic())),
             Cause::Document { errors, .. } => {
                 let lines: Vec<String> = errors.iter().map(|e| located(&self.path, e)).collect();
@@ -121,7 +128,9 @@ fn wrong<T>(path: &Path, wanted: &'static str, known: &'static str) -> Result<T,
 /// [`OpenError`] with the path, and the line where there is one.
 pub fn model(path: &Path) -> Result<Read<Model>, OpenError> {
     match ending(path).as_str() {
-        "" if shipped::asked(path).is_some() => Ok(document(path)?.map(|document| document.model)),
+        "" if shipped::asked_for(path).is_some() => {
+            Ok(document(path)?.map(|document| document.model))
+        }
         "osim" | "xml" => read_with(path, osim::read),
         "toml" => Ok(document(path)?.map(|document| document.model)),
         _ => wrong(path, "a model", ".osim, .toml"),
@@ -134,11 +143,8 @@ pub fn model(path: &Path) -> Result<Read<Model>, OpenError> {
 /// # Errors
 /// [`OpenError`] with the path and everything that is wrong.
 pub fn document(path: &Path) -> Result<Read<Document>, OpenError> {
-    if let Some(name) = shipped::asked(path) {
-        let text = shipped::text(name).unwrap_or_default().to_owned();
-        let wrong = |cause| OpenError { path: path.to_owned(), cause };
-        let read = shipped::document(name).ok_or_else(|| wrong(Cause::Unknown))?;
-        return read.map_err(|errors| wrong(Cause::Document { text, errors }));
+    if let Some(name) = shipped::asked_for(path) {
+        return shipped::read(name);
     }
     let text = utf8(path)?;
     let mut include = |name: &str| {

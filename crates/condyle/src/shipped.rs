@@ -13,19 +13,28 @@
 //! assert!(spine.find_segment("skull").is_ok());
 //! ```
 
+use crate::open::{Cause, OpenError};
+use condyle_formats::Read;
 use condyle_formats::document::{self, Document};
-use condyle_formats::{Diagnostic, Read};
 use std::path::Path;
 
 /// Name and text of every shipped model, by name.
 const MODELS: &[(&str, &str)] = &[
     ("arms", include_str!("../models/arms.toml")),
+    ("human", include_str!("../models/human.toml")),
     ("knee", include_str!("../models/knee.toml")),
     ("knee-three-rotations", include_str!("../models/knee-three-rotations.toml")),
     ("legs", include_str!("../models/legs.toml")),
+    ("octopus", include_str!("../models/octopus.toml")),
+    ("shoulder", include_str!("../models/shoulder.toml")),
+    ("shoulder-shao2003", include_str!("../models/shoulder-shao2003.toml")),
     ("spine", include_str!("../models/spine.toml")),
     ("spine-shao2003", include_str!("../models/spine-shao2003.toml")),
 ];
+
+/// Texts that models include and that are none alone, by the path that is included.
+const PARTS: &[(&str, &str)] =
+    &[("parts/human-markers.toml", include_str!("../models/parts/human-markers.toml"))];
 
 /// The names of all shipped models, in alphabetical order.
 pub fn names() -> impl Iterator<Item = &'static str> {
@@ -38,48 +47,61 @@ pub fn text(name: &str) -> Option<&'static str> {
     MODELS.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }
 
-/// A shipped model with all that it includes; none if there is none of that name.
+/// Reads a shipped model with all that it includes.
 ///
 /// # Errors
-/// Everything that is wrong with its text.
-pub fn document(name: &str) -> Option<Result<Read<Document>, Vec<Diagnostic>>> {
-    let text = text(name)?;
-    Some(document::read(text, &mut |file| included(file).map(str::to_owned)))
+/// [`Cause::Unknown`] if there is none of that name.
+pub fn read(name: &str) -> Result<Read<Document>, OpenError> {
+    with(name, &mut |_| {})
 }
 
 /// A text of a shipped model that needs no other: the text itself where it includes none, else its
 /// head of comments and the whole model, written out.
 ///
 /// # Errors
-/// Everything that is wrong with its text.
-pub fn standalone(name: &str) -> Option<Result<String, Vec<Diagnostic>>> {
-    let text = text(name)?;
-    let mut parts: Vec<String> = vec![];
+/// [`Cause::Unknown`] if there is none of that name.
+pub fn standalone(name: &str) -> Result<String, OpenError> {
+    let mut parts = vec![];
+    let document = with(name, &mut |file| parts.push(file.to_owned()))?.value;
+    if parts.is_empty() {
+        return Ok(document.source);
+    }
+    let head = document.source.lines().take_while(|line| line.starts_with('#'));
+    let head: String = head.map(|line| format!("{line}\n")).collect();
+    let (parts, model) = (parts.join(", "), document::write(&document.model));
+    Ok(format!("{head}#\n# Written out with {parts}, in metres and radians.\n{model}"))
+}
+
+/// Reads a shipped model and names what it includes.
+fn with(name: &str, note: &mut dyn FnMut(&str)) -> Result<Read<Document>, OpenError> {
+    let fail = |cause| OpenError { path: name.into(), cause };
+    let text = text(name).ok_or_else(|| fail(Cause::Unknown))?;
     let read = document::read(text, &mut |file| {
-        parts.push(file.to_owned());
+        note(file);
         included(file).map(str::to_owned)
     });
-    Some(read.map(|read| {
-        if parts.is_empty() {
-            return read.value.source;
-        }
-        let head: String =
-            text.lines().take_while(|l| l.starts_with('#')).map(|l| format!("{l}\n")).collect();
-        let parts = parts.join(", ");
-        let model = document::write(&read.value.model);
-        format!("{head}#\n# Written out with {parts}, in metres and radians.\n{model}")
-    }))
+    read.map_err(|errors| fail(Cause::Document { text: text.to_owned(), errors }))
 }
 
-/// The text of an included file: another shipped model.
+/// The text of an included file: another shipped model, or a part.
 fn included(file: &str) -> Result<&'static str, String> {
-    file.strip_suffix(".toml").and_then(text).ok_or_else(|| format!("no model `{file}` is shipped"))
+    let part = || PARTS.iter().find(|(path, _)| *path == file).map(|(_, text)| *text);
+    let model = file.strip_suffix(".toml").and_then(text);
+    model.or_else(part).ok_or_else(|| format!("no text `{file}` is shipped"))
 }
 
-/// The name that a path is if it is no file but may be a shipped model: one word without an ending.
-pub(crate) fn asked(path: &Path) -> Option<&str> {
+/// The word that a path is where it is no file, but may be the name of a shipped model: one without
+/// a folder and an ending.
+///
+/// ```
+/// use condyle::shipped;
+/// use std::path::Path;
+/// assert_eq!(shipped::asked_for(Path::new("shoulder")), Some("shoulder"));
+/// assert_eq!(shipped::asked_for(Path::new("shoulder.osim")), None);
+/// ```
+pub fn asked_for(path: &Path) -> Option<&str> {
     let name = path.to_str()?;
-    let word =
-        !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || c == '-' || c == '_');
-    (word && !path.exists()).then_some(name)
+    let in_words = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+    let word = !name.is_empty() && name.chars().all(in_words);
+    (word && !path.is_file()).then_some(name)
 }

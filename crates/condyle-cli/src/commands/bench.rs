@@ -12,7 +12,7 @@ use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub(crate) struct Bench {
-    /// The model.
+    /// The model: a file, or the name of a shipped one.
     model: PathBuf,
     /// One JSON document on standard output.
     #[arg(long)]

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(crate) struct Check {
-    /// The model.
+    /// The model: a file, or the name of a shipped one.
     model: PathBuf,
     /// A motion whose columns are named after coordinates.
     motion: Option<PathBuf>,

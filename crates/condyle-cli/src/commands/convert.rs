@@ -1,6 +1,6 @@
 //! `condyle convert`: a file in another format.
 
-mod poses;
+pub(super) mod poses;
 
 use super::Outcome;
 use crate::failure::{Failure, warn_about, warned};
@@ -105,16 +105,17 @@ impl Target {
 impl Convert {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
         let target = Target::of(&self.output, self.to)?;
-        let bytes = match open::ending(&self.input).as_str() {
+        let ending = open::ending(&self.input);
+        // The name of a shipped model stands for its document.
+        let named = shipped::asked_for(&self.input).is_some();
+        let bytes = match if named { "toml" } else { ending.as_str() } {
             "mot" | "sto" | "csv" | "json" if target != Target::Toml => self.motion_as(target)?,
+            "toml" if target == Target::Toml => self.document()?.into_bytes(),
             "osim" | "xml" if target == Target::Toml => {
                 let model = warned(&self.input, open::model(&self.input)?);
                 document::write(&model).into_bytes()
             }
-            "toml" if target == Target::Toml => self.document()?.into_bytes(),
-            "" if target == Target::Toml && !self.input.exists() => self.document()?.into_bytes(),
             "osim" | "xml" | "toml" if target == Target::Glb => self.still()?,
-            "" if target == Target::Glb && !self.input.exists() => self.still()?,
             "trc" if matches!(target, Target::Trc | Target::Csv) => self.recording_as(target)?,
             "trc" => {
                 return Err(self.unknown(
@@ -148,9 +149,8 @@ impl Convert {
 
     /// A document as it was written; a shipped one such that it can be read anywhere.
     fn document(&self) -> Result<String, Failure> {
-        let name = self.input.to_str().filter(|_| !self.input.exists());
-        if let Some(Ok(text)) = name.and_then(shipped::standalone) {
-            return Ok(text);
+        if let Some(name) = shipped::asked_for(&self.input) {
+            return Ok(shipped::standalone(name)?);
         }
         Ok(warned(&self.input, open::document(&self.input)?).source)
     }

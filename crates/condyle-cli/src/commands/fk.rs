@@ -1,16 +1,17 @@
 //! `condyle fk`: world transforms.
 
 use super::Outcome;
+use super::convert::poses::{self, Poses};
 use crate::failure::{Failure, warn_about, warned};
 use crate::output;
 use clap::{Args, ValueEnum};
-use condyle::{CoordinateKind, Mode, Model, Motion, Pose, Program, open};
+use condyle::{Mode, Model, Motion, Pose, Program, open};
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(crate) struct Fk {
-    /// The model.
+    /// The model: a file, or the name of a shipped one.
     model: PathBuf,
     /// A JSON file with `{"coordinate": number}` in radians and metres, or a list of such poses.
     #[arg(long, value_name = "P.json", conflicts_with = "motion")]
@@ -84,72 +85,17 @@ impl Fk {
         Ok(Outcome::Done)
     }
 
-    fn requests(&self, model: &Model) -> Result<Requests, Failure> {
+    fn requests(&self, model: &Model) -> Result<Poses, Failure> {
         if let Some(path) = &self.motion {
             let table = warned(path, open::table(path)?);
             let (motion, warnings) = Motion::from_table(model, &table);
             warn_about(path, &warnings);
-            return Ok(Requests { motion, named: vec![] });
+            return Ok(Poses { motion, named: vec![] });
         }
         let Some(path) = &self.pose else {
             let motion = Motion { times: vec![0.0], frames: vec![model.defaults()] };
-            return Ok(Requests { motion, named: vec![vec![false; model.coordinates().len()]] });
+            return Ok(Poses { motion, named: vec![vec![false; model.coordinates().len()]] });
         };
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| Failure::new(format!("{}: {error}", path.display())))?;
-        let value: Value = serde_json::from_str(&text)
-            .map_err(|error| Failure::new(format!("{}: {error}", path.display())))?;
-        let poses = match value {
-            Value::Array(poses) => poses,
-            one => vec![one],
-        };
-        let mut requests = Requests { motion: Motion::default(), named: vec![] };
-        for (index, pose) in poses.iter().enumerate() {
-            let (stored, named) = read_pose(model, pose).map_err(|message| {
-                let place = if poses.len() > 1 { format!("pose {index}: ") } else { String::new() };
-                Failure::new(format!("{}: {place}{message}", path.display()))
-            })?;
-            requests.motion.times.push(index as f64);
-            requests.motion.frames.push(stored);
-            requests.named.push(named);
-        }
-        Ok(requests)
+        poses::read(path, model)
     }
-}
-
-/// What was asked for: the coordinates of each frame, and which of them were named.
-struct Requests {
-    motion: Motion,
-    /// Empty where every frame names every coordinate that it has.
-    named: Vec<Vec<bool>>,
-}
-
-/// The stored numbers of a pose, and which coordinates it names.
-fn read_pose(model: &Model, pose: &Value) -> Result<(Vec<f64>, Vec<bool>), String> {
-    let Value::Object(entries) = pose else {
-        return Err(r#"a pose is an object such as {"knee_angle_r": 0.5}"#.to_owned());
-    };
-    let mut stored = model.defaults();
-    let mut named = vec![false; model.coordinates().len()];
-    for (key, value) in entries {
-        let id = model.find_coordinate(key).map_err(|error| error.to_string())?;
-        let place = model.stored_range(id);
-        named[id.index()] = true;
-        if model.coordinate(id).kind == CoordinateKind::Orientation {
-            let numbers: Option<Vec<f64>> =
-                value.as_array().map(|list| list.iter().filter_map(Value::as_f64).collect());
-            match numbers {
-                Some(q) if q.len() == 4 && q.iter().any(|v| *v != 0.0) => {
-                    stored[place].copy_from_slice(&q);
-                }
-                _ => return Err(format!("`{key}` is an orientation: give [x, y, z, w]")),
-            }
-            continue;
-        }
-        match value.as_f64() {
-            Some(number) => stored[place.start] = number,
-            None => return Err(format!("`{key}` is {value}, not a number (radians or metres)")),
-        }
-    }
-    Ok((stored, named))
 }

@@ -12,7 +12,7 @@ use clap::Args;
 use condyle::formats::opensim::setup as ik;
 use condyle::formats::{Read, Recording, Table};
 use condyle::open::{self, Cause, OpenError};
-use condyle::{Model, formats};
+use condyle::{Model, formats, shipped};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -73,7 +73,7 @@ impl Content {
 fn content(path: &Path) -> Result<Read<Content>, Failure> {
     Ok(match open::ending(path).as_str() {
         // A word that is no file is the name of a shipped model, or a mistake that tells them.
-        "" if !path.exists() => open::model(path)?.map(Content::Model),
+        "" if shipped::asked_for(path).is_some() => open::model(path)?.map(Content::Model),
         "osim" | "toml" => open::model(path)?.map(Content::Model),
         "trc" => open::recording(path)?.map(Content::Recording),
         "mot" | "sto" | "csv" => open::table(path)?.map(Content::Table),

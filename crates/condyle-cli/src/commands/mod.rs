@@ -7,6 +7,7 @@ mod demo;
 mod diff;
 mod fk;
 mod info;
+mod scale;
 mod track;
 
 use crate::failure::Failure;
@@ -30,6 +31,8 @@ enum Command {
     Fk(fk::Fk),
     /// Find the motion of a model that follows recorded markers.
     Track(track::Track),
+    /// Make a model as large as the person of a static trial.
+    Scale(scale::Scale),
     /// Write a file in another format.
     Convert(convert::Convert),
     /// Compare two motions, coordinate by coordinate.
@@ -56,6 +59,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
         Command::Check(command) => command.run(),
         Command::Fk(command) => command.run(),
         Command::Track(command) => command.run(),
+        Command::Scale(command) => command.run(),
         Command::Convert(command) => command.run(),
         Command::Diff(command) => command.run(),
         Command::Bench(command) => command.run(),

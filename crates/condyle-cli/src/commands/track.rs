@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(crate) struct Track {
-    /// The model.
+    /// The model: a file, or the name of a shipped one.
     model: PathBuf,
     /// One or several marker recordings.
     #[arg(required = true)]

@@ -10,6 +10,8 @@ mod document;
 mod fk;
 mod info;
 mod leg;
+mod scale;
+mod shipped;
 mod track;
 
 use command::{Answer, Folder};

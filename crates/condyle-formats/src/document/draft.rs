@@ -18,6 +18,7 @@ pub(super) struct Draft {
     pub(super) outputs: Vec<OutputDraft>,
     pub(super) markers: Vec<MarkerDraft>,
     pub(super) closures: Vec<ClosureDraft>,
+    pub(super) sizes: Vec<SizeDraft>,
     /// Components that could not be read, by joint set and name; joints with no name behind.
     pub(super) broken: HashSet<(String, String)>,
 }
@@ -72,6 +73,12 @@ pub(super) struct ClosureDraft {
     pub(super) condition: ConditionDraft,
 }
 
+#[derive(Clone)]
+pub(super) struct SizeDraft {
+    pub(super) name: Name,
+    pub(super) segments: Vec<Name>,
+}
+
 /// A segment, or the world.
 pub(super) type Holder = Option<Name>;
 
@@ -93,5 +100,6 @@ impl Draft {
         self.components.sort_by_key(|c| at(&c.name));
         self.markers.sort_by_key(|m| at(&m.name));
         self.closures.sort_by_key(|c| at(&c.name));
+        self.sizes.sort_by_key(|s| at(&s.name));
     }
 }

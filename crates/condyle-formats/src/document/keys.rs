@@ -15,6 +15,7 @@ pub(super) const TOP: &[&str] = &[
     "joint_set",
     "marker",
     "closure",
+    "size",
 ];
 /// What a document of this format may be.
 pub(super) const KINDS: &[&str] = &["model", "limit", "law", "recipe", "setup", "names"];
@@ -73,6 +74,7 @@ pub(super) const COORDINATE: &[&str] =
     &["kind", "default", "range", "enforced", "locked", "unit", "source", "follows"];
 pub(super) const MARKER: &[&str] = &["segment", "at"];
 pub(super) const CLOSURE: &[&str] = &["points", "frames", "distance", "coupling"];
+pub(super) const SIZE: &[&str] = &["segments"];
 pub(super) const FRAME: &[&str] = &["segment", "at", "turn", "order", "matrix"];
 pub(super) const CENTRE: &[&str] = &["to", "at"];
 pub(super) const CONE_POINT: &[&str] = &["direction", "twist"];
@@ -128,7 +130,7 @@ pub(super) const COMPONENTS: &[(&str, &[&str])] = &[
 /// The components stand under their kinds, such as `component.rotate`.
 #[must_use]
 pub fn keys() -> Vec<(String, Vec<&'static str>)> {
-    let plain: [(&str, &[&'static str]); 16] = [
+    let plain: [(&str, &[&'static str]); 17] = [
         ("model", TOP),
         ("mirror", MIRROR),
         ("segment", SEGMENT),
@@ -137,6 +139,7 @@ pub fn keys() -> Vec<(String, Vec<&'static str>)> {
         ("coordinate", COORDINATE),
         ("marker", MARKER),
         ("closure", CLOSURE),
+        ("size", SIZE),
         ("point", MARKER),
         ("frame", FRAME),
         ("centre", CENTRE),

@@ -255,6 +255,7 @@ impl Resolver<'_> {
                 self.builder.closure(Closure { name: c.name.text.clone(), condition });
             }
         }
+        self.sizes(&draft.sizes);
     }
 
     fn outputs(&mut self, outputs: &[super::draft::OutputDraft]) {
@@ -293,6 +294,27 @@ impl Resolver<'_> {
             if let Some(segment) = segment {
                 self.builder.output(set, segment, motion);
             }
+        }
+    }
+
+    /// Size groups, each segment in one at most.
+    fn sizes(&mut self, sizes: &[super::draft::SizeDraft]) {
+        let mut group_of: HashMap<&str, &str> = HashMap::new();
+        for size in sizes {
+            let mut segments = vec![];
+            for name in &size.segments {
+                let Some(id) = self.segment(name) else { continue };
+                if let Some(other) = group_of.insert(&name.text, &size.name.text) {
+                    let message = match other == size.name.text {
+                        true => format!("segment `{}` is listed twice", name.text),
+                        false => format!("segment `{}` is in size `{other}` too", name.text),
+                    };
+                    let help = "list it once: a segment grows with one group";
+                    self.sources.error(name.spot, "model/size-group", message, help);
+                }
+                segments.push(id);
+            }
+            self.builder.size_group(&size.name.text, segments);
         }
     }
 

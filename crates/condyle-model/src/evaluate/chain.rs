@@ -126,7 +126,7 @@ pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
     frame
 }
 
-/// The steps that few joints have.
+/// The steps that few joints have. Inlined: a call would push the frame through memory.
 #[inline(always)]
 fn rare_step<S: Scalar, R: Recorder<S>>(
     code: &Code,

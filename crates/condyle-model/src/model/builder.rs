@@ -1,9 +1,10 @@
 //! Making a model step by step.
 
 use super::check::{self, Finding, Severity};
+use super::scaling;
 use super::{
     Closure, ComponentId, Coordinate, CoordinateId, CoordinateKind, JointSet, JointSetId, Marker,
-    Model, NamedComponent, Segment, SegmentId, UpAxis,
+    Model, NamedComponent, Segment, SegmentId, SizeGroup, UpAxis,
 };
 use crate::component::{
     Ball, Combine, Compensate, Component, ConstantCurvature, Depend, Ellipsoid, Map, Pivot, Place,
@@ -35,6 +36,7 @@ impl ModelBuilder {
                 components: vec![],
                 markers: vec![],
                 closures: vec![],
+                size_groups: vec![],
                 stored_offsets: vec![],
                 tangent_offsets: vec![],
             },
@@ -292,6 +294,11 @@ impl ModelBuilder {
         self.model.closures.push(closure);
     }
 
+    /// Segments that grow together when the model is scaled; a segment is in one group at most.
+    pub fn size_group(&mut self, name: &str, segments: Vec<SegmentId>) {
+        self.model.size_groups.push(SizeGroup { name: name.to_owned(), segments });
+    }
+
     /// Checks everything and freezes the model.
     ///
     /// # Errors
@@ -305,7 +312,8 @@ impl ModelBuilder {
     /// # Errors
     /// All findings, at least one of which is an error.
     pub fn build_with_findings(mut self) -> Result<(Model, Vec<Finding>), Vec<Finding>> {
-        let findings = check::check(&self.model);
+        let mut findings = check::check(&self.model);
+        findings.extend(scaling::check_groups(&self.model));
         if findings.iter().any(|f| f.severity == Severity::Error) {
             return Err(findings);
         }

@@ -8,12 +8,14 @@ mod builder;
 mod check;
 mod closure;
 mod coordinate;
+mod scaling;
 mod segment;
 
 pub use builder::ModelBuilder;
 pub use check::{Finding, Severity};
 pub use closure::{Closure, Condition};
 pub use coordinate::{Coordinate, CoordinateKind};
+pub use scaling::SizeGroup;
 pub use segment::Segment;
 
 pub(crate) use check::{Node, dependency_order};
@@ -74,6 +76,7 @@ pub struct Model {
     pub(crate) components: Vec<NamedComponent>,
     pub(crate) markers: Vec<Marker>,
     pub(crate) closures: Vec<Closure>,
+    pub(crate) size_groups: Vec<SizeGroup>,
     /// Where each coordinate's stored numbers begin; one more for the end.
     pub(crate) stored_offsets: Vec<u32>,
     /// Where each coordinate's directions begin; one more for the end.

@@ -25,7 +25,16 @@ pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
             let plain: String = name.chars().filter(|c| !c.is_whitespace()).collect();
             alike.entry(plain.to_lowercase()).or_default().push(name);
         }
+        let one_place = |names: &[String]| {
+            let places = model.markers().iter().filter(|m| names.contains(&m.name));
+            let mut places = places.map(|m| (m.segment, m.point));
+            places.next().is_some_and(|first| places.all(|place| place == first))
+        };
         for names in alike.into_values().filter(|names| names.len() > 1) {
+            // Two names for one place may be taken for each other.
+            if what == "markers" && one_place(&names) {
+                continue;
+            }
             findings.push(Finding::new(
                 Severity::Warning,
                 "lint/alike-names",

@@ -9,7 +9,7 @@ use std::path::Path;
 pub(in crate::commands) struct Poses {
     /// One frame for each pose; its time is its number.
     pub(in crate::commands) motion: Motion,
-    /// For each pose and coordinate, whether the pose names it.
+    /// For each pose and coordinate, whether the pose names it; empty where every pose names all.
     pub(in crate::commands) named: Vec<Vec<bool>>,
 }
 

@@ -7,6 +7,7 @@ mod contact;
 mod coordinate;
 mod custom;
 mod shape;
+mod size;
 
 use super::draft::{CoordinateDraft, Draft, OutputDraft, SegmentDraft};
 use super::fields::{Constant, Reader};
@@ -36,7 +37,7 @@ impl Reader<'_> {
             }
             _ => {}
         }
-        for family in ["segment", "joint", "joint_set", "marker", "closure"] {
+        for family in ["segment", "joint", "joint_set", "marker", "closure", "size"] {
             let Some(node) = top.get(family) else { continue };
             for entry in self.entries(node, family) {
                 match family {
@@ -44,13 +45,15 @@ impl Reader<'_> {
                     "joint" => self.joint(&mut draft, entry),
                     "joint_set" => self.joint_set(&mut draft, entry),
                     "marker" => self.marker(&mut draft, entry),
-                    _ => self.closure(&mut draft, entry),
+                    "closure" => self.closure(&mut draft, entry),
+                    _ => self.size(&mut draft, entry),
                 }
             }
         }
         draft.sort();
         if let Some(mirror) = top.get("mirror").and_then(|n| self.mirror(n)) {
             mirror.complete(&mut draft, self.sources);
+            size::both_sides(&mirror, &mut draft);
         }
         draft
     }

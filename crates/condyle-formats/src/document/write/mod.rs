@@ -98,6 +98,11 @@ impl Writer<'_> {
             line!(self, "at = {}", vector(marker.point));
         }
         self.closures();
+        for group in model.size_groups() {
+            line!(self, "\n[size.{}]", key(&group.name));
+            let names = group.segments.iter().map(|&id| text(&model.segment(id).name));
+            line!(self, "segments = [{}]", names.collect::<Vec<_>>().join(", "));
+        }
     }
 
     fn set(&self, index: usize) -> String {

@@ -1,0 +1,147 @@
+//! `condyle scale`: a model and a person who stands still in, a model of that person out.
+
+use super::Outcome;
+use crate::failure::{Failure, warn_about, warned};
+use crate::output;
+use clap::Args;
+use condyle::formats::document;
+use condyle::open;
+use condyle::scaling::{Factor, MarkerFit, Plan, Scaled, fit};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+/// How many of the markers that were moved farthest are shown.
+const SHOWN: usize = 5;
+
+#[derive(Debug, Args)]
+pub(crate) struct Scale {
+    /// The model; its size groups are what grows together.
+    model: PathBuf,
+    /// A marker recording of the person standing still.
+    #[arg(long = "static", value_name = "TRIAL")]
+    trial: PathBuf,
+    /// The scaled model, a document (.toml), or `-`.
+    #[arg(short, long, value_name = "SUBJECT.toml")]
+    output: PathBuf,
+    /// Leave markers where the scaled model has them, instead of where they were seen.
+    #[arg(long)]
+    keep_markers: bool,
+    /// A setup of OpenSim's scaling; not read yet.
+    #[arg(long, value_name = "SCALE.xml")]
+    setup: Option<PathBuf>,
+    /// The figures as one JSON document on standard output.
+    #[arg(long)]
+    json: bool,
+}
+
+impl Scale {
+    pub(crate) fn run(self) -> Result<Outcome, Failure> {
+        if let Some(setup) = &self.setup {
+            return Err(Failure::new(format!(
+                "{}: setups of OpenSim's scaling are not read; leave --setup away: the groups that \
+                 grow together are tables [size.…] of the model",
+                setup.display()
+            )));
+        }
+        let to_screen = self.output == Path::new("-");
+        if !to_screen && open::ending(&self.output) != "toml" {
+            let path = self.output.display();
+            let message =
+                format!("{path}: a scaled model is written as a document: end it in .toml");
+            return Err(Failure::new(message));
+        }
+        if to_screen && self.json {
+            return Err(Failure::new(
+                "--json and -o - both want standard output: give one of them",
+            ));
+        }
+        let model = warned(&self.model, open::model(&self.model)?);
+        let recording = warned(&self.trial, open::recording(&self.trial)?);
+        let plan = Plan { keep_markers: self.keep_markers, ..Plan::default() };
+        let scaled = fit(&model, &recording, &plan)
+            .map_err(|error| Failure::new(format!("{}: {error}", self.trial.display())))?;
+        warn_about(&self.trial, &scaled.warnings);
+        let subject = match self.output.file_stem() {
+            Some(stem) if !to_screen => scaled.model.named(&stem.to_string_lossy()),
+            _ => scaled.model.clone(),
+        };
+        output::write(&self.output, document::write(&subject).as_bytes())?;
+        if self.json {
+            output::print_json(&self.report(&scaled))?;
+        } else if !to_screen {
+            output::print(table(&scaled, plan.keep_markers).as_bytes())?;
+        }
+        Ok(if scaled.status.is_solved() { Outcome::Done } else { Outcome::DoesNotHold })
+    }
+
+    fn report(&self, scaled: &Scaled) -> Value {
+        let factor = |f: &Factor| {
+            json!({
+                "name": f.name,
+                "factor": f.factor,
+                "spread": f.spread,
+                "length_m": f.length,
+                "change_m": change(f),
+            })
+        };
+        let marker =
+            |m: &MarkerFit| json!({ "name": m.name, "error_m": m.error, "moved_m": m.moved });
+        json!({
+            "model": self.model.to_string_lossy(),
+            "trial": self.trial.to_string_lossy(),
+            "body": factor(&scaled.body),
+            "groups": scaled.groups.iter().map(factor).collect::<Vec<_>>(),
+            "rms_before_m": scaled.rms_before,
+            "rms_after_m": scaled.rms_after,
+            "markers_used": scaled.markers.len(),
+            "markers": scaled.markers.iter().map(marker).collect::<Vec<_>>(),
+            "markers_unused": scaled.unused,
+            "markers_moved": !self.keep_markers,
+            "status": scaled.status.name(),
+        })
+    }
+}
+
+/// By how much the longest stretch has grown, in metres.
+fn change(factor: &Factor) -> f64 {
+    factor.length * (factor.factor - 1.0)
+}
+
+fn table(scaled: &Scaled, kept: bool) -> String {
+    let row = |f: &Factor| {
+        let length = match f.length > 0.0 {
+            true => format!("{:+.1} mm of {:.1}", 1e3 * change(f), 1e3 * f.length),
+            false => String::new(),
+        };
+        vec![
+            f.name.clone(),
+            format!("{:.4}", f.factor),
+            format!("± {:.1} %,", 1e2 * f.spread),
+            length,
+        ]
+    };
+    let rows: Vec<Vec<String>> =
+        std::iter::once(&scaled.body).chain(&scaled.groups).map(row).collect();
+    let mut text = output::columns(&rows);
+    text.push_str(&format!(
+        "{} markers: {:.1} mm RMS before, {:.1} mm after\n",
+        scaled.markers.len(),
+        1e3 * scaled.rms_before,
+        1e3 * scaled.rms_after,
+    ));
+    if !scaled.unused.is_empty() {
+        let names: Vec<&str> = scaled.unused.iter().map(String::as_str).collect();
+        text.push_str(&output::wrapped("not used:", &names));
+    }
+    let by = |m: &MarkerFit| if kept { m.error } else { m.moved };
+    let mut far: Vec<&MarkerFit> = scaled.markers.iter().collect();
+    far.sort_by(|a, b| by(b).total_cmp(&by(a)));
+    text.push_str(if kept { "farthest off:\n" } else { "moved to where they were seen:\n" });
+    let rows: Vec<Vec<String>> = far
+        .iter()
+        .take(SHOWN)
+        .map(|m| vec![m.name.clone(), format!("{:.1} mm", 1e3 * by(m))])
+        .collect();
+    text.push_str(&output::columns(&rows));
+    text
+}

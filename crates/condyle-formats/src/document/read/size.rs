@@ -1,0 +1,43 @@
+//! Size groups: segments that grow together.
+
+use super::super::draft::{Draft, SizeDraft};
+use super::super::fields::Reader;
+use super::super::keys;
+use super::super::mirror::Mirror;
+use super::super::source::Name;
+use super::super::tree::Entry;
+use std::collections::HashSet;
+
+impl Reader<'_> {
+    pub(super) fn size(&mut self, draft: &mut Draft, entry: &Entry) {
+        let name = entry.key.clone();
+        let label = format!("size.{}", name.text);
+        let fields = self.table(&entry.node, name.spot, label, keys::SIZE);
+        let segments = match fields.get("segments") {
+            Some(node) => self.names(node, "segments").0,
+            None => {
+                self.missing(&fields, "segments", "the segments that grow together");
+                vec![]
+            }
+        };
+        draft.sizes.push(SizeDraft { name, segments });
+    }
+}
+
+/// Lists the other side of each segment beside it, unless that is listed itself, in any group.
+///
+/// Groups keep their names: both sides grow alike where one is written.
+pub(super) fn both_sides(mirror: &Mirror, draft: &mut Draft) {
+    let all = draft.sizes.iter().flat_map(|size| &size.segments);
+    let listed: HashSet<String> = all.map(|name| name.text.clone()).collect();
+    let there: HashSet<&str> = draft.segments.iter().map(|s| s.name.text.as_str()).collect();
+    for size in &mut draft.sizes {
+        let other = |name: &Name| {
+            let text = format!("{}{}", name.text.strip_suffix(&mirror.from)?, mirror.to);
+            (there.contains(text.as_str()) && !listed.contains(&text))
+                .then_some(Name { text, spot: name.spot })
+        };
+        let others: Vec<Name> = size.segments.iter().filter_map(other).collect();
+        size.segments.extend(others);
+    }
+}

@@ -1,0 +1,447 @@
+//! A model of another size: every length fixed in a bone grows with that bone.
+//!
+//! With a factor s for each segment, 1 for the world:
+//!
+//! ```text
+//! joint in the parent      translation · s(parent)
+//! joint in the segment     translation · s(segment)
+//! marker, end of a loop    point · s(its segment)
+//! length inside a joint    · s(parent)
+//! ```
+//!
+//! Directions, angles and everything without a unit stay. So with one factor for all segments every
+//! place of a posture, seen from the root, is that many times as far away, and no rotation changes.
+//!
+//! Lengths inside a joint are the places of [`Place`](crate::component::Place), the centres of
+//! [`Pivot`]s, half axes and arcs, and what a [`Map`](crate::component::Map) or a
+//! [`Combine`](crate::component::Combine) hands to a [`Translate`](crate::component::Translate).
+//! A component that moves several segments grows with the parent of the first of them. A contact
+//! knows its two bones: points grow with the one that glides, the ellipsoid with the one below.
+//!
+//! A distance that is a coordinate itself, as where a pelvis is in a room, is what the caller gives
+//! and stays. Where it is one between two bones, its default and its range grow, since a kneecap that
+//! rests 4 cm above a joint rests higher above a larger one.
+
+use super::check::Finding;
+use super::{Condition, CoordinateKind, Model, NamedComponent, SegmentId, Severity};
+use crate::component::{Centre, Component, ContactPair, Gliding, Pivot, Source};
+use condyle_math::function::{
+    Curve, Function, FunctionOfSeveral, MultivariatePolynomial, PiecewiseLinear, Polynomial,
+    SimmSpline,
+};
+use condyle_math::{Affine, Vec3};
+use std::collections::{BTreeMap, HashMap};
+
+/// Segments that grow together, such as the bones of both thighs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SizeGroup {
+    /// Its name, unique in the model.
+    pub name: String,
+    /// Its segments; none of them is in another group.
+    pub segments: Vec<SegmentId>,
+}
+
+/// Who reads each output of a function as a length, and the factor it takes.
+type Lengths = BTreeMap<(usize, u32), Vec<(Reader, f64)>>;
+
+/// Who reads a number as a length.
+#[derive(Clone, Copy)]
+enum Reader {
+    /// A translation, by its position among the components.
+    Translate(usize),
+    /// A coordinate that follows, by its position.
+    Follower(usize),
+}
+
+impl Model {
+    /// The groups of segments that grow together; a segment in none belongs to the body's size.
+    pub fn size_groups(&self) -> &[SizeGroup] {
+        &self.size_groups
+    }
+
+    /// The model with every length that is fixed in a segment times that segment's factor.
+    ///
+    /// `factors` has one for each segment, in their order; one that is missing or not a positive
+    /// finite number counts as 1. A joint's frame in the parent, and the lengths inside the joint,
+    /// grow with the parent; its frame in the segment, markers and ends of loops with their segment.
+    /// A component that moves several segments grows with the parent of the first of them.
+    ///
+    /// Angles stay, and so does what is fixed in the world, every coordinate that is a distance itself
+    /// (but its default and range grow where it lies between two segments), bounds of distances that
+    /// a [`Depend`](crate::component::Depend) sets, and the law of a user.
+    ///
+    /// ```
+    /// use condyle_math::Vec3;
+    /// use condyle_model::ModelBuilder;
+    ///
+    /// let mut b = ModelBuilder::new("leg");
+    /// let thigh = b.segment("thigh", None);
+    /// let shank = b.segment("shank", Some(thigh));
+    /// b.place_joint(shank, Vec3::new(0.0, -0.42, 0.0));
+    /// let model = b.build().unwrap().scaled(&[1.1, 0.9]);
+    /// let knee = model.segment(shank).joint_in_parent.translation;
+    /// assert!((knee.y + 0.462).abs() < 1e-15);
+    /// ```
+    #[must_use]
+    pub fn scaled(&self, factors: &[f64]) -> Self {
+        let usable = |&f: &f64| f > 0.0 && f.is_finite();
+        let of = |id: Option<SegmentId>| -> f64 {
+            let own = id.and_then(|id| factors.get(id.index()).copied());
+            own.filter(usable).unwrap_or(1.0)
+        };
+        let mut model = self.clone();
+        for (index, segment) in model.segments.iter_mut().enumerate() {
+            grow(&mut segment.joint_in_parent, of(segment.parent));
+            grow(&mut segment.joint_in_segment, of(Some(SegmentId(index as u32))));
+        }
+        for marker in &mut model.markers {
+            marker.point = marker.point * of(marker.segment);
+        }
+        let of_component: Vec<f64> =
+            self.joints_of_components().iter().map(|j| j.map_or(1.0, of)).collect();
+        for (named, &factor) in model.components.iter_mut().zip(&of_component) {
+            grow_component(&mut named.component, factor, &of);
+        }
+        let of_coordinate = model.grow_distances(&of_component);
+        for closure in &mut model.closures {
+            grow_condition(&mut closure.condition, &of, &of_coordinate);
+        }
+        model
+    }
+
+    /// The model with markers at other places of their segments (metres), in the order of the
+    /// markers; `None` and what is missing leave a marker where it is.
+    #[must_use]
+    pub fn with_markers_at(&self, points: &[Option<Vec3>]) -> Self {
+        let mut model = self.clone();
+        for (marker, point) in model.markers.iter_mut().zip(points) {
+            marker.point = point.unwrap_or(marker.point);
+        }
+        model
+    }
+
+    /// The model under another name.
+    #[must_use]
+    pub fn named(&self, name: &str) -> Self {
+        Self { name: name.to_owned(), ..self.clone() }
+    }
+
+    /// For each component the parent of the first segment that it moves; none if it moves nothing.
+    fn joints_of_components(&self) -> Vec<Option<Option<SegmentId>>> {
+        let mut found = vec![None; self.components.len()];
+        for segment in &self.segments {
+            let mut open: Vec<Source> = segment.motion.into_iter().collect();
+            while let Some(source) = open.pop() {
+                match source {
+                    Source::Coordinate(id) => open.extend(self.coordinate(id).follows),
+                    Source::Output(id, _) if found[id.index()].is_none() => {
+                        found[id.index()] = Some(segment.parent);
+                        let inputs = self.components[id.index()].component.inputs();
+                        open.extend(inputs.into_iter().map(|(_, _, source)| source));
+                    }
+                    Source::Output(..) => {}
+                }
+            }
+        }
+        found
+    }
+
+    /// Makes functions that hand out distances larger; answers with the factor of each coordinate
+    /// that is one.
+    ///
+    /// A number that is read as a distance and as something else is made twice.
+    fn grow_distances(&mut self, of_component: &[f64]) -> Vec<f64> {
+        let mut of_coordinate: Vec<Option<f64>> = vec![None; self.coordinates.len()];
+        let mut lengths = Lengths::new();
+        for (index, &factor) in of_component.iter().enumerate() {
+            let Component::Translate(c) = &self.components[index].component else { continue };
+            let mut source = c.distance;
+            let mut reader = Reader::Translate(index);
+            // Along followers, each of which is met once.
+            while let Source::Coordinate(id) = source {
+                let coordinate = &self.coordinates[id.index()];
+                let known = &mut of_coordinate[id.index()];
+                if coordinate.kind != CoordinateKind::Translation || known.is_some() {
+                    break;
+                }
+                *known = Some(factor);
+                let Some(leader) = coordinate.follows else { break };
+                (source, reader) = (leader, Reader::Follower(id.index()));
+            }
+            if let Source::Output(id, output) = source {
+                lengths.entry((id.index(), output)).or_default().push((reader, factor));
+            }
+        }
+        self.find_led_distances(&lengths, &mut of_coordinate);
+        let of_coordinate: Vec<f64> = of_coordinate.iter().map(|k| k.unwrap_or(1.0)).collect();
+        for (coordinate, &factor) in self.coordinates.iter_mut().zip(&of_coordinate) {
+            if factor != 1.0 {
+                coordinate.default[0] *= factor;
+                coordinate.range.lower = coordinate.range.lower.map(|x| x * factor);
+                coordinate.range.upper = coordinate.range.upper.map(|x| x * factor);
+            }
+        }
+        let of_input = |source: Source| match source {
+            Source::Coordinate(id) => of_coordinate[id.index()],
+            Source::Output(..) => 1.0,
+        };
+        // Arguments first: what was said of a distance holds at the larger one.
+        for named in &mut self.components {
+            match &mut named.component {
+                Component::Map(c) => {
+                    let argument = of_input(c.input);
+                    c.functions.iter_mut().for_each(|f| stretch(f, 1.0, argument));
+                }
+                Component::Combine(c) => {
+                    if let FunctionOfSeveral::Linear { slopes, .. } = &mut c.function {
+                        for (slope, &input) in slopes.iter_mut().zip(&c.inputs) {
+                            *slope /= of_input(input);
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+        let readers = self.count_readers();
+        for ((index, output), users) in lengths {
+            let source = Source::Output(super::ComponentId(index as u32), output);
+            let alike = users.iter().all(|(_, factor)| *factor == users[0].1);
+            if alike && readers.get(&source) == Some(&users.len()) {
+                grow_output(&mut self.components[index].component, output, users[0].1);
+                continue;
+            }
+            for (reader, factor) in users.into_iter().filter(|(_, factor)| *factor != 1.0) {
+                if let Some(own) = self.output_again(index, output, factor) {
+                    self.connect(reader, own);
+                }
+            }
+        }
+        of_coordinate
+    }
+
+    /// Distances that reach a translation by way of a function only.
+    fn find_led_distances(&self, lengths: &Lengths, of_coordinate: &mut [Option<f64>]) {
+        for (&(index, _), users) in lengths {
+            let inputs = self.components[index].component.inputs();
+            for (_, _, input) in inputs {
+                if let Source::Coordinate(id) = input
+                    && self.coordinate(id).kind == CoordinateKind::Translation
+                    && self.coordinate(id).follows.is_none()
+                {
+                    of_coordinate[id.index()].get_or_insert(users[0].1);
+                }
+            }
+        }
+    }
+
+    /// How many ports and followers read each output.
+    fn count_readers(&self) -> HashMap<Source, usize> {
+        let ports = self.components.iter().flat_map(|c| c.component.inputs());
+        let ports = ports.map(|(_, _, source)| source);
+        let followers = self.coordinates.iter().filter_map(|c| c.follows);
+        let mut count = HashMap::new();
+        ports.chain(followers).for_each(|source| *count.entry(source).or_insert(0) += 1);
+        count
+    }
+
+    /// A second output of a function, `factor` times the first.
+    fn output_again(&mut self, index: usize, output: u32, factor: f64) -> Option<Source> {
+        let named = self.components[index].clone();
+        match &mut self.components[index].component {
+            Component::Map(c) => {
+                let mut function = c.functions.get(output as usize)?.clone();
+                stretch(&mut function, factor, 1.0);
+                c.functions.push(function);
+                let last = c.functions.len() as u32 - 1;
+                Some(Source::Output(super::ComponentId(index as u32), last))
+            }
+            Component::Combine(_) => {
+                let name = format!("{}_length", named.name);
+                let mut again = NamedComponent { name, ..named };
+                grow_output(&mut again.component, output, factor);
+                self.components.push(again);
+                let last = self.components.len() as u32 - 1;
+                Some(Source::Output(super::ComponentId(last), 0))
+            }
+            _ => None,
+        }
+    }
+
+    fn connect(&mut self, reader: Reader, source: Source) {
+        match reader {
+            Reader::Translate(index) => {
+                if let Component::Translate(c) = &mut self.components[index].component {
+                    c.distance = source;
+                }
+            }
+            Reader::Follower(index) => self.coordinates[index].follows = Some(source),
+        }
+    }
+}
+
+fn grow(frame: &mut Affine, factor: f64) {
+    frame.translation = frame.translation * factor;
+}
+
+/// The lengths that a component holds itself.
+fn grow_component(component: &mut Component, factor: f64, of: &impl Fn(Option<SegmentId>) -> f64) {
+    if let Component::Contact(c) = component {
+        let (own, below) = (of(Some(c.segment)), of(Some(c.surface)));
+        // Made anew only where it changes, so that factor 1 leaves every bit.
+        if (own, below) == (1.0, 1.0) {
+            return;
+        }
+        let mut place = c.law.ellipsoid_in_surface();
+        grow(&mut place, below);
+        let pair = |p: &ContactPair| ContactPair {
+            first: p.first * own,
+            second: p.second * own,
+            at: p.at,
+        };
+        let pairs = c.law.pairs().iter().map(pair).collect();
+        if let Ok(law) = Gliding::new(place, c.law.radii() * below, c.law.axis(), pairs) {
+            c.law = law;
+        }
+        return;
+    }
+    if factor == 1.0 {
+        return;
+    }
+    match component {
+        Component::Place(c) => grow(&mut c.child_in_parent, factor),
+        Component::Pivot(c) => {
+            let centre = match c.centre() {
+                Centre::Intervals(list) => {
+                    Centre::Intervals(list.iter().map(|(to, at)| (*to, *at * factor)).collect())
+                }
+                Centre::Path(path) => {
+                    let mut path = path.clone();
+                    path.iter_mut().for_each(|spline| grow_spline(spline, factor, 1.0));
+                    Centre::Path(path)
+                }
+            };
+            if let Ok(pivot) = Pivot::new(c.angle, c.axis(), centre) {
+                *c = pivot;
+            }
+        }
+        Component::Ellipsoid(c) => c.radii = c.radii * factor,
+        Component::ConstantCurvature(c) => c.length *= factor,
+        Component::Curve(c) => {
+            c.path.iter_mut().for_each(|spline| grow_spline(spline, factor, 1.0));
+        }
+        _ => {}
+    }
+}
+
+/// One output of a function, `factor` times as large.
+fn grow_output(component: &mut Component, output: u32, factor: f64) {
+    match component {
+        Component::Map(c) => {
+            if let Some(function) = c.functions.get_mut(output as usize) {
+                stretch(function, factor, 1.0);
+            }
+        }
+        Component::Combine(c) if factor != 1.0 => match &mut c.function {
+            FunctionOfSeveral::Linear { slopes, intercept } => {
+                slopes.iter_mut().for_each(|slope| *slope *= factor);
+                *intercept *= factor;
+            }
+            FunctionOfSeveral::Polynomial(p) => {
+                let all: Vec<f64> = p.coefficients().iter().map(|c| c * factor).collect();
+                let (dimension, order) = (p.dimension(), p.order());
+                if let Ok(larger) = MultivariatePolynomial::up_to_order(dimension, order, &all) {
+                    *p = larger;
+                }
+            }
+        },
+        _ => {}
+    }
+}
+
+fn grow_condition(
+    condition: &mut Condition,
+    of: &impl Fn(Option<SegmentId>) -> f64,
+    of_coordinate: &[f64],
+) {
+    match condition {
+        Condition::Points { at } => at.iter_mut().for_each(|(id, p)| *p = *p * of(*id)),
+        Condition::Frames { at } => at.iter_mut().for_each(|(id, frame)| grow(frame, of(*id))),
+        Condition::Distance { at, distance } => {
+            at.iter_mut().for_each(|(id, p)| *p = *p * of(*id));
+            // A ligament between two bones grows with both, one to the world with its bone.
+            *distance *= match at.each_ref().map(|(id, _)| *id) {
+                [Some(a), Some(b)] => (of(Some(a)) * of(Some(b))).sqrt(),
+                [one, other] => of(one.or(other)),
+            };
+        }
+        Condition::Coupling { follower, driver, function } => {
+            let [result, argument] = [*follower, *driver].map(|id| of_coordinate[id.index()]);
+            stretch(function, result, argument);
+        }
+    }
+}
+
+/// x ↦ `result` · f(x / `argument`).
+fn stretch(function: &mut Function, result: f64, argument: f64) {
+    if result != 1.0 {
+        function.factor *= result;
+    }
+    if argument == 1.0 {
+        return;
+    }
+    match &mut function.curve {
+        Curve::Constant(_) => {}
+        Curve::Linear { slope, .. } => *slope /= argument,
+        Curve::Polynomial(p) => {
+            let mut power = 1.0;
+            let all = p.ascending().iter().map(|c| {
+                let c = c / power;
+                power *= argument;
+                c
+            });
+            *p = Polynomial::from_ascending(all.collect());
+        }
+        Curve::PiecewiseLinear(p) => {
+            let (x, y) = p.knots().map(|(x, y)| (x * argument, y)).unzip();
+            if let Ok(wider) = PiecewiseLinear::new(x, y) {
+                *p = wider;
+            }
+        }
+        Curve::SimmSpline(s) => grow_spline(s, 1.0, argument),
+    }
+}
+
+fn grow_spline(spline: &mut SimmSpline, result: f64, argument: f64) {
+    let (x, y) = spline.knots().map(|(x, y)| (x * argument, y * result)).unzip();
+    if let Ok(larger) = SimmSpline::new(x, y) {
+        *spline = larger;
+    }
+}
+
+/// What is wrong with the groups of a model: names given twice, segments in two groups.
+pub(super) fn check_groups(model: &Model) -> Vec<Finding> {
+    let mut findings = vec![];
+    let mut error = |message: String, help: &str| {
+        let (severity, code) = (Severity::Error, "model/size-group");
+        findings.push(Finding { severity, code, message, help: help.to_owned() });
+    };
+    let mut group_of: Vec<Option<&str>> = vec![None; model.segments.len()];
+    for (index, group) in model.size_groups.iter().enumerate() {
+        if model.size_groups[..index].iter().any(|other| other.name == group.name) {
+            let message = format!("two size groups are named `{}`", group.name);
+            error(message, "give each size group a name of its own");
+        }
+        for id in &group.segments {
+            let Some(known) = group_of.get_mut(id.index()) else { continue };
+            if let Some(other) = known.replace(&group.name) {
+                let segment = &model.segment(*id).name;
+                let message = format!(
+                    "segment `{segment}` is in size group `{other}` and in `{}`",
+                    group.name
+                );
+                error(message, "list each segment once, in one size group");
+            }
+        }
+    }
+    findings
+}

@@ -1,0 +1,308 @@
+//! Models made as large as a person, against persons that are made of known factors.
+
+use condyle::formats::{LengthUnit, Recording, document};
+use condyle::math::{Mat3, Vec3};
+use condyle::scaling::{Factor, Plan, ScaleError, Scaled, fit};
+use condyle::{Mode, Model, ModelBuilder, Pose, Program, SegmentId};
+
+const KNEE: &str = include_str!("../models/knee.toml");
+const LEGS: &str = include_str!("../models/legs.toml");
+const ARMS: &str = include_str!("../models/arms.toml");
+const SPINE: &str = include_str!("../models/spine.toml");
+
+/// Legs that stand in a room, with groups of sizes.
+const PERSON: &str = r#"
+condyle = 1
+kind = "model"
+include = ["legs.toml"]
+[joint.room]
+type = "free"
+segment = "pelvis"
+[size]
+pelvis = { segments = "pelvis" }
+thigh = { segments = ["femur_r", "patella_r"] }
+shank = { segments = ["tibia_r", "fibula_r"] }
+foot = { segments = ["talus_r", "calcaneus_r", "toes_r"] }
+"#;
+
+/// The factors of the person who is made up, in the order of the groups.
+const TRUTH: [f64; 4] = [1.0, 1.1, 0.95, 1.05];
+
+fn read(text: &str) -> Model {
+    let include = &mut |path: &str| match path {
+        "knee.toml" => Ok(KNEE.to_owned()),
+        "legs.toml" => Ok(LEGS.to_owned()),
+        other => Err(format!("`{other}` is not here")),
+    };
+    document::read(text, include).expect("a model").value.model
+}
+
+/// Numbers between -1 and 1: SplitMix64 (Steele, Lea & Flood 2014).
+struct Dice(u64);
+
+impl Dice {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    /// Of variance 1: twelve numbers of variance 1/3 each have the variance 4.
+    fn normal(&mut self) -> f64 {
+        (0..12).map(|_| self.next()).sum::<f64>() / 2.0
+    }
+}
+
+fn pose(model: &Model, stored: &[f64]) -> Pose {
+    let program = Program::compile(model);
+    let mut pose = Pose::new(&program);
+    program.evaluate(stored, Mode::Open, &mut pose).expect("numbers of this model");
+    pose
+}
+
+fn places(model: &Model, stored: &[f64]) -> Vec<Vec3> {
+    let pose = pose(model, stored);
+    let at = |m: &condyle::model::model::Marker| match m.segment {
+        Some(id) => pose.segment(id) * m.point,
+        None => m.point,
+    };
+    model.markers().iter().map(at).collect()
+}
+
+/// A recording of the model's markers, moved by what `noise` says.
+fn recording(
+    model: &Model,
+    stored: &[f64],
+    frames: usize,
+    mut noise: impl FnMut() -> f64,
+) -> Recording {
+    let places = places(model, stored);
+    let positions = (0..frames).flat_map(|_| places.clone());
+    let positions = positions.map(|p| Some(p.to_array().map(|x| x + noise())));
+    Recording {
+        labels: model.markers().iter().map(|m| m.name.clone()).collect(),
+        rate: 100.0,
+        times: (0..frames).map(|f| f as f64 / 100.0).collect(),
+        positions: positions.collect(),
+        units: LengthUnit::Metre,
+    }
+}
+
+/// The made up person and how it stands.
+fn person() -> (Model, Model, Vec<f64>) {
+    let model = read(PERSON);
+    let mut factors = vec![1.0; model.segments().len()];
+    for (group, factor) in model.size_groups().iter().zip(TRUTH) {
+        group.segments.iter().for_each(|id| factors[id.index()] = factor);
+    }
+    let person = model.scaled(&factors);
+    let mut stored = model.defaults();
+    let stands = [
+        ("hip_flexion_r", 0.2),
+        ("hip_flexion_l", 0.05),
+        ("hip_adduction_r", -0.1),
+        ("knee_angle_r", 0.3),
+        ("knee_angle_l", 0.25),
+        ("ankle_angle_r", 0.1),
+        ("mtp_angle_r", 0.05),
+    ];
+    for (name, angle) in stands {
+        let id = model.find_coordinate(name).expect(name);
+        stored[model.stored_range(id).start] = angle;
+    }
+    (model, person, stored)
+}
+
+#[test]
+fn one_factor_multiplies_every_place_of_the_shipped_models() {
+    let mut dice = Dice(11);
+    for text in [SPINE, LEGS, ARMS, KNEE] {
+        let model = read(text);
+        assert_eq!(model.scaled(&vec![1.0; model.segments().len()]), model);
+        let larger = model.scaled(&vec![0.7; model.segments().len()]);
+        for _ in 0..40 {
+            let stored: Vec<f64> = model.defaults().iter().map(|q| q + 0.4 * dice.next()).collect();
+            let [before, after] = [&model, &larger].map(|m| pose(m, &stored));
+            for id in model.segment_ids() {
+                let root = root(&model, id);
+                let seen = |pose: &Pose| {
+                    let (own, from) = (pose.segment(id), pose.segment(root));
+                    (own.linear, own.translation - from.translation)
+                };
+                let ((turn, place), (turn_after, place_after)) = (seen(&before), seen(&after));
+                assert!((place_after - place * 0.7).norm() < 1e-12, "{} {id:?}", model.name());
+                let off = |a: Mat3, b: Mat3| (a.x - b.x).norm() + (a.y - b.y).norm();
+                assert!(off(turn, turn_after) < 1e-12, "{} {id:?}", model.name());
+            }
+        }
+    }
+}
+
+fn root(model: &Model, id: SegmentId) -> SegmentId {
+    let mut here = id;
+    while let Some(parent) = model.segment(here).parent {
+        here = parent;
+    }
+    here
+}
+
+#[test]
+fn exact_markers_give_the_factors_back() {
+    let (model, person, stored) = person();
+    let trial = recording(&person, &stored, 1, || 0.0);
+    // So weak a prior moves nothing: it pulls by 1/100² where the markers pull by 1/0.015².
+    let plan = Plan { group_spread: 100.0, ..Plan::default() };
+    let scaled = fit(&model, &trial, &plan).expect("a person");
+    for (found, truth) in scaled.groups.iter().zip(TRUTH) {
+        assert!((found.factor / truth - 1.0).abs() < 1e-4, "{found:?} {truth}");
+    }
+    assert!(scaled.rms_before > 0.005 && scaled.rms_after < 1e-5, "{scaled:?}");
+    assert_eq!(scaled.warnings, []);
+    lands(&scaled, &trial);
+    let longest = |name: &str| scaled.groups.iter().find(|g| g.name == name).expect(name).length;
+    // The ankle below the knee is 0.4305 m down, 1.9 mm behind and 1.5 mm beside (legs.toml).
+    assert!((longest("shank") - Vec3::new(0.0019, 0.4305, 0.0015).norm()).abs() < 1e-12);
+}
+
+/// Every marker is where it was seen, in the posture that was found.
+#[track_caller]
+fn lands(scaled: &Scaled, trial: &Recording) {
+    let found = places(&scaled.model, &scaled.posture);
+    for (label, name) in trial.labels.iter().enumerate() {
+        let index = scaled.model.markers().iter().position(|m| m.name == *name).expect(name);
+        let seen = trial.position(0, label).expect("it is seen");
+        assert!((found[index] - Vec3::from(seen)).norm() < 1e-12, "{name}");
+    }
+}
+
+#[test]
+fn noise_moves_the_factors_as_far_as_the_spread_says() {
+    let (model, person, stored) = person();
+    let frames = 81;
+    let sigma = 0.002;
+    for seed in 0..3 {
+        let mut dice = Dice(seed);
+        let trial = recording(&person, &stored, frames, || sigma * dice.normal());
+        // A median of n normal numbers has the standard deviation √(π/2n)·σ.
+        let spread = sigma * (std::f64::consts::FRAC_PI_2 / frames as f64).sqrt();
+        let plan = Plan { marker_spread: spread, group_spread: 100.0, keep_markers: true };
+        let scaled = fit(&model, &trial, &plan).expect("a person");
+        for (Factor { name, factor, spread, .. }, truth) in scaled.groups.iter().zip(TRUTH) {
+            let off = (factor / truth).ln();
+            // Four times in 15000 beyond 4 standard deviations.
+            assert!(off.abs() < 4.0 * spread, "seed {seed} {name}: {off}, spread {spread}");
+            assert!(*spread < 0.005, "seed {seed} {name}: {spread}");
+        }
+        // Kept where the larger bones have them.
+        assert!(scaled.markers.iter().all(|m| m.moved == 0.0));
+    }
+}
+
+/// Three rods in the world, a group each, the third without markers.
+fn rods() -> (Model, Recording) {
+    let mut b = ModelBuilder::new("rods");
+    let along = [0.1, 0.25, 0.4];
+    for (name, axis) in [("a", Vec3::X), ("b", Vec3::Y), ("c", Vec3::Z)] {
+        let rod = b.segment(name, None);
+        b.size_group(name, vec![rod]);
+        if name != "c" {
+            for (i, x) in along.iter().enumerate() {
+                b.marker(&format!("{name}{i}"), Some(rod), axis * *x);
+            }
+        }
+    }
+    let model = b.build().expect("rods");
+    let trial = recording(&model.scaled(&[1.2, 0.9, 1.0]), &[], 1, || 0.0);
+    (model, trial)
+}
+
+#[test]
+fn groups_are_drawn_to_the_body_as_far_as_the_spreads_say() {
+    let (model, trial) = rods();
+    let plan = Plan::default();
+    let scaled = fit(&model, &trial, &plan).expect("rods");
+    // A slow twin: the cost as a sum, lowered along one logarithm after the other.
+    let squares: f64 = [0.1f64, 0.25, 0.4].iter().map(|x| x * x).sum();
+    let cost = |x: &[f64; 4]| {
+        let [s, a, b, c] = *x;
+        let rod = |log: f64, truth: f64| squares * ((log.exp() - truth) / 0.015).powi(2);
+        let pull = |log: f64| ((log - s) / 0.08).powi(2);
+        rod(a, 1.2) + rod(b, 0.9) + pull(a) + pull(b) + pull(c)
+    };
+    let mut x = [0.0; 4];
+    let mut step = 0.1;
+    while step > 1e-10 {
+        let mut better = false;
+        for i in 0..4 {
+            for sign in [1.0, -1.0] {
+                let mut there = x;
+                there[i] += sign * step;
+                if cost(&there) < cost(&x) {
+                    (x, better) = (there, true);
+                }
+            }
+        }
+        if !better {
+            step *= 0.5;
+        }
+    }
+    let found: Vec<&Factor> = std::iter::once(&scaled.body).chain(&scaled.groups).collect();
+    for (factor, expected) in found.iter().zip(x) {
+        assert!((factor.factor.ln() - expected).abs() < 1e-6, "{factor:?} {expected}");
+    }
+    // Without markers: the body's factor, known as well as the body's and 8 % more.
+    let [body, .., third] = found[..] else { panic!("four factors") };
+    assert!((body.factor - third.factor).abs() < 1e-7);
+    assert!((third.spread - body.spread.hypot(0.08)).abs() < 1e-6);
+}
+
+#[test]
+fn markers_that_move_are_left_out() {
+    let (model, mut trial) = rods();
+    let one = trial.positions.clone();
+    trial.positions = (0..60).flat_map(|_| one.clone()).collect();
+    trial.times = (0..60).map(f64::from).collect();
+    for frame in 0..60 {
+        // The first sways by 30 mm, the second is wrong in one frame.
+        if let Some(p) = &mut trial.positions[frame * one.len()] {
+            p[2] += [-0.03, 0.0, 0.03][frame % 3];
+        }
+    }
+    trial.positions[1] = Some([3.0, 3.0, 3.0]);
+    trial.positions[one.len() + 2] = None;
+    let scaled = fit(&model, &trial, &Plan::default()).expect("rods");
+    assert_eq!(scaled.unused, ["a0"]);
+    let said: Vec<&str> = scaled.warnings.iter().map(|w| w.message.as_str()).collect();
+    assert_eq!(said, ["marker `a0` moves by 30 mm"]);
+    assert!((scaled.groups[0].factor - 1.2).abs() < 0.01, "{:?}", scaled.groups[0]);
+}
+
+#[test]
+fn what_cannot_be_scaled_is_refused() {
+    let (model, trial) = rods();
+    let mut few = trial.clone();
+    few.labels = ["a0", "a1", "x", "y", "z", "w"].map(str::to_owned).to_vec();
+    let ScaleError::TooFewMarkers { usable, moving, .. } =
+        fit(&model, &few, &Plan::default()).expect_err("two markers")
+    else {
+        panic!("another error")
+    };
+    assert_eq!((usable, moving), (vec!["a0".to_owned(), "a1".to_owned()], vec![]));
+    few.labels = ["p", "q", "x", "y", "z", "w"].map(str::to_owned).to_vec();
+    let said = fit(&model, &few, &Plan::default()).expect_err("strangers").to_string();
+    assert!(said.starts_with("model and recording share no marker"), "{said}");
+    let bare = ModelBuilder::new("bare").build().expect("nothing");
+    let said = fit(&bare, &trial, &Plan::default()).expect_err("no markers").to_string();
+    assert!(said.starts_with("the model has no markers"), "{said}");
+}
+
+#[test]
+fn a_wrong_unit_ends_at_a_bound_and_is_said() {
+    let (model, mut trial) = rods();
+    trial.positions.iter_mut().flatten().flatten().for_each(|x| *x *= 1000.0);
+    let scaled = fit(&model, &trial, &Plan::default()).expect("rods");
+    assert!((scaled.body.factor - 2.0).abs() < 1e-9, "{:?}", scaled.body);
+    assert!(scaled.warnings.iter().any(|w| w.code == "scale/bound"), "{:?}", scaled.warnings);
+}
