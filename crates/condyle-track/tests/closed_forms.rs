@@ -172,9 +172,8 @@ fn markers_below_a_scale_find_its_factor() {
     b.marker("farther", Some(tip), Vec3::new(0.0, 0.4, 0.0));
     let model = b.build().unwrap();
     let (s, t) = (1.3f64, 0.4f64);
-    let hung = |x: f64, y: f64| {
-        [s * (1.0 + x * t.cos() - y * t.sin()), x * t.sin() + y * t.cos(), 0.0]
-    };
+    let hung =
+        |x: f64, y: f64| [s * (1.0 + x * t.cos() - y * t.sin()), x * t.sin() + y * t.cos(), 0.0];
     let targets = [[0.5 * s, 0.2, 0.0], hung(0.3, 0.1), hung(0.0, 0.4)];
     let tasks = Tasks {
         markers: (0..3).map(|marker| MarkerTask { marker, weight: 1.0 }).collect(),

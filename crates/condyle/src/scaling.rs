@@ -12,6 +12,9 @@
 //! 10 to 20 mm (σ = 15 mm), and bones differ from the body by some percent (τ = 8 %), so that a group
 //! without markers follows the body and one with many follows them. Factors are held to 0.5 to 2.
 //!
+//! A marker that stays farther off than 2σ is no landmark, or not the one that the model means: those
+//! on the middle of a thigh stand anywhere. It counts by (2σ/|e|)² of another, found in a few rounds.
+//!
 //! The posture is solved inside, for every set of factors; outside are Gauss-Newton steps in the
 //! logarithms of the factors, with central differences. Nothing is random, nothing remembered.
 //!
@@ -39,6 +42,10 @@ const FEWEST: usize = 3;
 const STEP: f64 = 1e-3;
 /// First guesses of a posture about which nothing is known.
 const GUESSES: usize = 8;
+/// Beyond so many spreads a marker counts less.
+const TRUSTED: f64 = 2.0;
+/// Most rounds in which markers are weighed.
+const ROUNDS: usize = 8;
 /// Most steps in the factors.
 const ITERATIONS: usize = 20;
 
@@ -200,7 +207,7 @@ pub fn fit(model: &Model, recording: &Recording, plan: &Plan) -> Result<Scaled, 
         let said = Diagnostic::new("scale/custom", "laws of kind `custom` keep their lengths");
         warnings.push(said.with_help("nobody but their author knows which of their numbers are"));
     }
-    let search = Search::new(model, &standing, plan);
+    let mut search = Search::new(model, &standing, plan);
     let before = search.first(&vec![0.0; search.len()]);
     let rms_before = before.answer.rms();
     // The body as a whole first: a posture found at the wrong size may be a wrong one.
@@ -210,6 +217,13 @@ pub fn fit(model: &Model, recording: &Recording, plan: &Plan) -> Result<Scaled, 
     let again = search.first(&best.logs);
     if again.cost < best.cost * (1.0 - 1e-9) {
         best = search.descend(again, false);
+    }
+    for _ in 0..ROUNDS {
+        if !search.weigh(&best.answer) {
+            break;
+        }
+        let start = search.at(&best.logs, Some(&best.answer.coordinates));
+        best = search.descend(start, false);
     }
     let spreads = search.spreads(&best);
     let scaled = search.model_at(&best.logs);
@@ -344,6 +358,18 @@ impl<'m> Search<'m> {
         Self { model, standing, plan, tasks, of_segment }
     }
 
+    /// Weighs the markers anew; answers whether that changes anything.
+    fn weigh(&mut self, answer: &FrameAnswer) -> bool {
+        let bound = TRUSTED * self.plan.marker_spread;
+        let mut change = 0.0f64;
+        for (task, &error) in self.tasks.markers.iter_mut().zip(&answer.marker_errors) {
+            let weight = if error > bound { (bound / error).powi(2) } else { 1.0 };
+            change = change.max((weight - task.weight).abs());
+            task.weight = weight;
+        }
+        change > 1e-3
+    }
+
     fn len(&self) -> usize {
         1 + self.model.size_groups().len()
     }
@@ -373,11 +399,12 @@ impl<'m> Search<'m> {
         let mut residuals = vec![];
         // The buffers are of this program, so nothing can be refused.
         let _ = tracker.program().evaluate(&answer.coordinates, Mode::Open, &mut pose);
-        for (&marker, place) in self.standing.markers.iter().zip(places) {
-            let marker = &scaled.markers()[marker];
+        for (task, place) in self.tasks.markers.iter().zip(places) {
+            let marker = &scaled.markers()[task.marker];
             let at = marker.segment.map_or(marker.point, |id| pose.segment(id) * marker.point);
             let off = at - place.map_or(at, Vec3::from);
-            residuals.extend(off.to_array().map(|x| x / self.plan.marker_spread));
+            let scale = task.weight.sqrt() / self.plan.marker_spread;
+            residuals.extend(off.to_array().map(|x| x * scale));
         }
         let groups = logs[1..].iter().map(|log| (log - logs[0]) / self.plan.group_spread);
         residuals.extend(groups);

@@ -3,7 +3,10 @@
 use condyle::formats::{LengthUnit, Recording, document};
 use condyle::math::{Mat3, Vec3};
 use condyle::scaling::{Factor, Plan, ScaleError, Scaled, fit};
-use condyle::{Mode, Model, ModelBuilder, Pose, Program, SegmentId};
+use condyle::{
+    CoordinateId, CoordinateKind, Mode, Model, ModelBuilder, Pose, Program, SegmentId, open,
+};
+use std::path::{Path, PathBuf};
 
 const KNEE: &str = include_str!("../models/knee.toml");
 const LEGS: &str = include_str!("../models/legs.toml");
@@ -259,6 +262,34 @@ fn groups_are_drawn_to_the_body_as_far_as_the_spreads_say() {
 }
 
 #[test]
+fn a_marker_that_means_something_else_counts_less() {
+    let (model, mut trial) = rods();
+    // The marker at 0.25 of the first rod was stuck on 0.3 m too far out.
+    trial.positions[1] = Some([1.2 * 0.25 + 0.3, 0.0, 0.0]);
+    let plan = Plan { group_spread: 100.0, ..Plan::default() };
+    let scaled = fit(&model, &trial, &plan).expect("rods");
+    // Least squares in closed form, with weights (30 mm/e)^2 beyond 30 mm that are found by turns.
+    let (along, seen) = ([0.1f64, 0.25, 0.4], [0.12f64, 0.6, 0.48]);
+    let weighed = |weights: [f64; 3]| {
+        let sum = |f: &dyn Fn(usize) -> f64| (0..3).map(|i| weights[i] * f(i)).sum::<f64>();
+        sum(&|i| along[i] * seen[i]) / sum(&|i| along[i] * along[i])
+    };
+    let alike = weighed([1.0; 3]);
+    let mut factor = alike;
+    for _ in 0..200 {
+        factor = weighed([0, 1, 2].map(|i| {
+            let error = (factor * along[i] - seen[i]).abs();
+            if error > 0.03 { (0.03 / error).powi(2) } else { 1.0 }
+        }));
+    }
+    assert!((alike - 1.2).abs() > 0.3 && (factor - 1.2).abs() < 0.01, "{alike} {factor}");
+    // Rounds end where no weight changes by 0.001, which moves the factor by 0.001·0.25·0.3/0.17.
+    assert!((scaled.groups[0].factor - factor).abs() < 5e-4, "{:?} {factor}", scaled.groups[0]);
+    let far = scaled.warnings.iter().filter(|w| w.code == "scale/far");
+    assert_eq!(far.count(), 1, "{:?}", scaled.warnings);
+}
+
+#[test]
 fn markers_that_move_are_left_out() {
     let (model, mut trial) = rods();
     let one = trial.positions.clone();
@@ -272,11 +303,13 @@ fn markers_that_move_are_left_out() {
     }
     trial.positions[1] = Some([3.0, 3.0, 3.0]);
     trial.positions[one.len() + 2] = None;
-    let scaled = fit(&model, &trial, &Plan::default()).expect("rods");
+    // So weak a prior pulls by a hundred-millionth of what the markers do.
+    let plan = Plan { group_spread: 100.0, ..Plan::default() };
+    let scaled = fit(&model, &trial, &plan).expect("rods");
     assert_eq!(scaled.unused, ["a0"]);
     let said: Vec<&str> = scaled.warnings.iter().map(|w| w.message.as_str()).collect();
     assert_eq!(said, ["marker `a0` moves by 30 mm"]);
-    assert!((scaled.groups[0].factor - 1.2).abs() < 0.01, "{:?}", scaled.groups[0]);
+    assert!((scaled.groups[0].factor - 1.2).abs() < 1e-6, "{:?}", scaled.groups[0]);
 }
 
 #[test]
@@ -305,4 +338,60 @@ fn a_wrong_unit_ends_at_a_bound_and_is_said() {
     let scaled = fit(&model, &trial, &Plan::default()).expect("rods");
     assert!((scaled.body.factor - 2.0).abs() < 1e-9, "{:?}", scaled.body);
     assert!(scaled.warnings.iter().any(|w| w.code == "scale/bound"), "{:?}", scaled.warnings);
+}
+
+/// The folder of shared data beside the repository; none where it is absent.
+fn data() -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    println!("skipped: shared data absent");
+    None
+}
+
+#[test]
+fn one_factor_multiplies_every_place_of_published_models() {
+    let Some(data) = data() else { return };
+    let mut dice = Dice(5);
+    let k = 1.2;
+    let mut models = 0;
+    for entry in std::fs::read_dir(data.join("models/osim")).expect("models") {
+        let path = entry.expect("a model").path();
+        let Ok(read) = open::model(&path) else { continue };
+        let model = read.value;
+        let larger = model.scaled(&vec![k; model.segments().len()]);
+        // Distances between two bones are given k times as large, those in the room as they are.
+        let between = |id: CoordinateId| {
+            let set = model.coordinate(id).joint_set;
+            let moved = model.segments().iter().filter(|s| s.joint_set == Some(set));
+            model.coordinate(id).kind == CoordinateKind::Translation
+                && moved.clone().count() > 0
+                && moved.clone().all(|s| s.parent.is_some())
+        };
+        for _ in 0..10 {
+            let small: Vec<f64> = model.defaults().iter().map(|q| q + 0.3 * dice.next()).collect();
+            let mut large = small.clone();
+            for id in model.coordinate_ids().filter(|&id| between(id)) {
+                large[model.stored_range(id).start] *= k;
+            }
+            let (before, after) = (pose(&model, &small), pose(&larger, &large));
+            for id in model.segment_ids() {
+                let root = root(&model, id);
+                let seen = |pose: &Pose| {
+                    let (own, from) = (pose.segment(id), pose.segment(root));
+                    let back = from.linear.transpose();
+                    (back * own.linear, back * (own.translation - from.translation))
+                };
+                let ((turn, place), (turn_after, place_after)) = (seen(&before), seen(&after));
+                let name = &model.segment(id).name;
+                let off = (place_after - place * k).norm();
+                assert!(off < 1e-9 * (1.0 + place.norm()), "{} {name}: {off}", path.display());
+                let off = (turn.x - turn_after.x).norm() + (turn.y - turn_after.y).norm();
+                assert!(off < 1e-9, "{} {name}: {off}", path.display());
+            }
+        }
+        models += 1;
+    }
+    assert!(models > 15, "{models} models");
 }

@@ -8,8 +8,8 @@ mod mirror;
 mod numbers;
 mod reading;
 mod round_trip;
-mod skeletons;
 mod shapes;
+mod skeletons;
 mod wrong;
 
 use condyle_formats::document::{self, Document};
