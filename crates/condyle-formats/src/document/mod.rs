@@ -10,6 +10,7 @@
 //! joint_set.J.component.K.X  = the inputs and parameters of a component of kind X
 //! joint_set.J.output         = SEGMENT = "K", or a list of factors
 //! marker.M   = segment, at
+//! size.G     = segments (that grow together when a figure is scaled)
 //! closure.L  = points (and distance), frames, or coupling
 //! port       = "name" in the same joint set, "set.name" elsewhere, ".2" for a second output
 //! function   = number | { constant|linear|ends|polynomial|spline|lines = ..., factor = ... }
