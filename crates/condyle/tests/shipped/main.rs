@@ -1,0 +1,12 @@
+//! The shipped models against the numbers that they were made of.
+
+mod arms;
+mod figure;
+mod human;
+mod knee;
+mod legs;
+mod limb;
+mod names;
+mod octopus;
+mod rib_cage;
+mod spine;
