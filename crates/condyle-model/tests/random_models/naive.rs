@@ -219,9 +219,12 @@ impl<'a> Evaluator<'a> {
         let back = Affine::new(back, -(back * surface.translation));
         let pose = back * parent * segment.joint_in_parent * before;
         let drivers: Vec<f64> = c.drivers.iter().map(|&d| self.scalar(d)).collect();
-        let [first, second] = self.blended(law.pairs(), &drivers);
-        let theta = scan::turn(pose, law.radii(), law.axis(), first);
-        let about_axis = Quat::from_axis_angle(law.axis(), theta.angle).to_mat3();
+        // Points and axis are the segment's own; it turns in the frame of its joint.
+        let joint = segment.joint_in_segment.rigid_inverse();
+        let [first, second] = self.blended(law.pairs(), &drivers).map(|point| joint * point);
+        let axis = joint.linear * law.axis();
+        let theta = scan::turn(pose, law.radii(), axis, first);
+        let about_axis = Quat::from_axis_angle(axis, theta.angle).to_mat3();
         let turned = pose * Affine::from_rotation(about_axis);
         let psi = scan::turn(turned, law.radii(), first.normalized(), second);
         if theta.doubtful || psi.doubtful {

@@ -185,6 +185,19 @@ impl Gliding {
         Ok(Self { ellipsoid_in_surface, radii, per_radius, axis, pairs, places })
     }
 
+    /// The same contact with its axis and its points as a frame in the gliding segment has them.
+    ///
+    /// They are given in the segment's own frame, but it turns in that of its joint.
+    pub(crate) fn seen_from(&self, joint_in_segment: Affine) -> Self {
+        let back = joint_in_segment.rigid_inverse();
+        let mut seen = self.clone();
+        seen.axis = back.linear * self.axis;
+        for pair in &mut seen.pairs {
+            (pair.first, pair.second) = (back * pair.first, back * pair.second);
+        }
+        seen
+    }
+
     /// The pose of the ellipsoid in the segment that carries it.
     pub fn ellipsoid_in_surface(&self) -> Affine {
         self.ellipsoid_in_surface

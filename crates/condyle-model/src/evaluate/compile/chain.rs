@@ -76,7 +76,8 @@ impl Compiler<'_> {
         let output = self.new_transform();
         let report = self.program.code.scalars as u32;
         self.program.code.scalars += 4;
-        let law = contact.law.clone();
+        let joint = self.model.segment(contact.segment).joint_in_segment;
+        let law = contact.law.seen_from(joint);
         let call = ContactCall { component, law, frame, drivers, output, report };
         self.program.code.contacts.push(call);
         let contact = self.program.code.contacts.len() as u32 - 1;
