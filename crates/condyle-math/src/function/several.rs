@@ -124,6 +124,9 @@ impl MultivariatePolynomial {
         for (&c, powers) in
             self.coefficients.iter().zip(self.exponents.chunks_exact(self.dimension))
         {
+            if c == 0.0 {
+                continue;
+            }
             let mut term = S::from_f64(c);
             for (&x, &power) in x.iter().zip(powers) {
                 for _ in 0..power {
