@@ -86,7 +86,8 @@ impl Law for Curve {
                 (all[order], all[order + 1])
             })
         };
-        let place = Vec3::new(at(0, 0), at(1, 0), at(2, 0));
+        let along = |k: usize| inputs[0].chain(|u| self.path[k].value_and_slope(u));
+        let place = Vec3::new(along(0), along(1), along(2));
         let Some(Heading { forward, up }) = self.heading else {
             return Affine::from_translation(place);
         };

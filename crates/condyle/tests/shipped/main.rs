@@ -9,4 +9,6 @@ mod limb;
 mod names;
 mod octopus;
 mod rib_cage;
+mod shoulder;
+mod shoulder_shao2003;
 mod spine;
