@@ -23,8 +23,7 @@ pub struct Pose<S = f64> {
     pub(super) transforms: Vec<Affine<S>>,
     /// Angles that turn something, with their sines and cosines.
     angles: Vec<S>,
-    sines: Vec<S>,
-    cosines: Vec<S>,
+    turns: Vec<(S, S)>,
     segments: usize,
     stored: usize,
     rows: Vec<u32>,
@@ -39,8 +38,7 @@ impl<S: Scalar> Pose<S> {
             scalars: vec![S::zero(); program.code.scalars],
             transforms: vec![Affine::identity(); program.code.transforms],
             angles: vec![S::zero(); program.code.turns.len()],
-            sines: vec![S::zero(); program.code.turns.len()],
-            cosines: vec![S::one(); program.code.turns.len()],
+            turns: vec![(S::zero(), S::one()); program.code.turns.len()],
             segments: program.segments,
             stored: program.stored,
             rows: program.code.rows.clone(),
@@ -51,7 +49,7 @@ impl<S: Scalar> Pose<S> {
 
     /// Bytes of the buffers: every scalar and transform, those that only components read included.
     pub fn bytes(&self) -> usize {
-        let turns = 3 * size_of_val(&self.angles[..]);
+        let turns = size_of_val(&self.angles[..]) + size_of_val(&self.turns[..]);
         size_of_val(&self.scalars[..]) + size_of_val(&self.transforms[..]) + turns
     }
 
@@ -72,16 +70,15 @@ impl<S: Scalar> Pose<S> {
         for (angle, &register) in self.angles.iter_mut().zip(registers) {
             *angle = self.scalars[register as usize];
         }
-        let both = self.sines.iter_mut().zip(&mut self.cosines);
-        for ((sine, cosine), angle) in both.zip(&self.angles) {
-            (*sine, *cosine) = angle.sin_cos();
+        for (turn, angle) in self.turns.iter_mut().zip(&self.angles) {
+            *turn = angle.sin_cos();
         }
     }
 
     /// Sine and cosine of a turn.
     #[inline(always)]
     pub(super) fn turn(&self, number: u32) -> (S, S) {
-        (self.sines[number as usize], self.cosines[number as usize])
+        self.turns[number as usize]
     }
 
     /// Puts the model's world somewhere else: into a scene, or into the space of a camera. Every
