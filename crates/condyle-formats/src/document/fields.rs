@@ -105,11 +105,30 @@ impl Reader<'_> {
                 self.sources.error(node.spot, "model/not-finite", message, "give a number");
                 None
             }
-            Value::Text(text) if text.contains(['$', '*']) => self.product(text, node.spot),
+            Value::Text(text) if text.contains(['$', '*']) => self.sum(text, node.spot),
             _ => {
                 self.wrong(node, label, "a number");
                 None
             }
+        }
+    }
+
+    /// A sum of products, such as `-$thigh - 0.5 * $height`; its signs stand between spaces.
+    fn sum(&mut self, text: &str, spot: Spot) -> Option<f64> {
+        let mut sum = Some(0.0);
+        let mut sign = 1.0;
+        let mut rest = text.trim();
+        loop {
+            let next = [" + ", " - "].into_iter().filter_map(|op| Some((rest.find(op)?, op))).min();
+            let (at, op) = next.unwrap_or((rest.len(), ""));
+            // All of them are read, so that all that are wrong are named.
+            let term = self.product(&rest[..at], spot);
+            sum = sum.zip(term).map(|(sum, term)| sum + sign * term);
+            if op.is_empty() {
+                return sum;
+            }
+            sign = if op == " - " { -1.0 } else { 1.0 };
+            rest = &rest[at + op.len()..];
         }
     }
 

@@ -87,7 +87,10 @@ impl Loader<'_> {
             // What an included text includes is said of the line in the document itself.
             let line = at.unwrap_or(wanted.spot);
             if let Some(more) = self.included(name, &wanted, line) {
-                merge(self.sources, &mut entries, more);
+                let (constants, more) =
+                    more.into_iter().partition(|entry| entry.key.text == "constants");
+                merge(self.sources, &mut entries, more, false);
+                merge(self.sources, &mut entries, constants, true);
             }
         }
         self.open.pop();
@@ -231,7 +234,9 @@ fn beside(from: &str, name: &str) -> String {
 }
 
 /// Tables go on in another text; a key is given once. As deep as the trees are.
-fn merge(sources: &mut Sources, into: &mut Vec<Entry>, more: Vec<Entry>) {
+///
+/// Of a constant that both give, that of the document which includes the other holds (`ours`).
+fn merge(sources: &mut Sources, into: &mut Vec<Entry>, more: Vec<Entry>, ours: bool) {
     let index: HashMap<String, usize> =
         into.iter().enumerate().map(|(i, e)| (e.key.text.clone(), i)).collect();
     for entry in more {
@@ -240,7 +245,10 @@ fn merge(sources: &mut Sources, into: &mut Vec<Entry>, more: Vec<Entry>) {
             continue;
         };
         match (&mut into[known].node.value, entry.node.value) {
-            (Value::Table(known), Value::Table(more)) => merge(sources, known, more),
+            (Value::Table(known), Value::Table(more)) => {
+                merge(sources, known, more, ours);
+            }
+            _ if ours => {}
             // Said twice alike, such as one mirror for several texts, it is said once.
             (Value::Text(known), Value::Text(more)) if *known == more => {}
             (Value::Number(known), Value::Number(more)) if *known == more => {}

@@ -21,6 +21,28 @@ fn a_number_is_a_product_of_numbers_and_constants() {
 }
 
 #[test]
+fn a_number_is_a_sum_of_products() {
+    let text = format!(
+        "{HEAD}constants = {{ thigh = 0.4, height = \"$thigh + 0.0108\" }}\n\
+         [segment.a]\nat = [\"-$thigh - 0.0108\", \"$height - 2 * $thigh + 1\", \"1e-3 * 1 - -2\"]\n"
+    );
+    let at = read(&text).segments()[0].joint_in_parent.translation.to_array();
+    let expected = [-0.4108, 0.4108 - 0.8 + 1.0, 2.001];
+    assert!(at.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15), "{at:?}");
+}
+
+#[test]
+fn the_including_document_has_the_last_word_on_constants() {
+    let part = format!(
+        "{HEAD}constants = {{ stature = 1.75, thigh = \"0.2 * $stature\" }}\n[segment.a]\nat = [\"$thigh\", 0, 0]\n"
+    );
+    let text = format!("{HEAD}include = [\"part.toml\"]\nconstants = {{ stature = 2 }}\n");
+    let read = condyle_formats::document::read(&text, &mut |_| Ok(part.clone())).unwrap();
+    let at = read.value.model.segments()[0].joint_in_parent.translation;
+    assert!((at.x - 0.4).abs() < 1e-15, "{at:?}");
+}
+
+#[test]
 fn what_is_no_product_is_refused_once() {
     let found = errors(
         "constants = { a = \"$b\", b = 2, c = \"$c\" }\n[segment.s]\nat = [\"$a\", \"2 * -3\", \"$ b\"]\n\
