@@ -50,20 +50,6 @@ pub enum Swinging {
 pub(crate) type ConeRow = (f64, [f64; 3]);
 
 impl JointCone {
-    /// How many numbers it reads and gives.
-    pub fn len(&self) -> usize {
-        match &self.of {
-            Swinging::Angles(..) => 3,
-            Swinging::Directions(..) => 2,
-            Swinging::Orientation(_) => 4,
-        }
-    }
-
-    /// Never: a cone always holds something.
-    pub fn is_empty(&self) -> bool {
-        false
-    }
-
     /// How many rows it has in open mode.
     pub fn rows(&self) -> usize {
         let twisting = !matches!(self.of, Swinging::Directions(..));
@@ -117,7 +103,7 @@ impl JointCone {
     /// radians; infinite where they are legal.
     ///
     /// # Panics
-    /// If there are fewer than [`JointCone::len`] of them.
+    /// If there are fewer of them than it has inputs.
     pub fn margin(&self, numbers: &[f64]) -> f64 {
         let rotation = self.turned(numbers);
         if let Swinging::Directions(..) = self.of {

@@ -74,7 +74,8 @@ use condyle_math::{Affine, Scalar};
 /// Where a component's input, or a segment's motion, comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Source {
-    /// The effective value of a coordinate, of any joint set.
+    /// The value of a coordinate, of any joint set: what was asked for, in posed mode inside its range.
+    /// Where a limit component holds the coordinate, what it holds is that component's output.
     Coordinate(CoordinateId),
     /// One output of a component, of any joint set.
     Output(ComponentId, u32),

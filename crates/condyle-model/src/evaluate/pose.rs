@@ -106,6 +106,9 @@ impl<S: Scalar> Pose<S> {
     }
 
     /// A limit row: negative where the posture of the last evaluation breaks that limit.
+    ///
+    /// Meant for open mode. In posed mode the row of a bound or a range tells how far off what was asked
+    /// for is, and the rows of a cone are 0.
     pub fn limit_row(&self, row: usize) -> S {
         self.scalars[self.rows[row] as usize]
     }

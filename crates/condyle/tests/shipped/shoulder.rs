@@ -199,7 +199,7 @@ fn the_left_is_the_right_in_a_mirror() {
                     }
                 }
                 let pose = figure.pose(&stored, mode);
-                mirror.assert_segments(&pose, &pose, 1e-9);
+                mirror.assert_segments(&pose, &pose, 1e-12);
             }
         }
     }
