@@ -1,9 +1,8 @@
 //! Why a command could not be carried out, and warnings on the way.
 
-use condyle::NameError;
 use condyle::formats::document;
-use condyle::formats::{Diagnostic, Error, Read};
 use condyle::open::{Cause, OpenError, located};
+use condyle::{Diagnostic, Error, Read};
 use std::fmt;
 use std::path::Path;
 
@@ -18,7 +17,7 @@ impl Failure {
 
     /// About a file.
     pub(crate) fn about(path: &Path, error: &Error) -> Self {
-        Self(located(path, error.diagnostic()))
+        Self(located(path, &error[0]))
     }
 }
 
@@ -31,9 +30,9 @@ impl fmt::Display for Failure {
 impl From<OpenError> for Failure {
     fn from(error: OpenError) -> Self {
         match &error.cause {
-            Cause::Document { text, errors } => {
+            Cause::Content { text: Some(text), error: content } => {
                 let name = error.path.display().to_string();
-                let shown: Vec<String> = errors
+                let shown: Vec<String> = content
                     .iter()
                     .map(|one| document::render(&name, text, std::slice::from_ref(one)))
                     .collect();
@@ -44,8 +43,8 @@ impl From<OpenError> for Failure {
     }
 }
 
-impl From<NameError> for Failure {
-    fn from(error: NameError) -> Self {
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
         Self(error.to_string())
     }
 }
@@ -65,6 +64,6 @@ pub(crate) fn warned<T>(path: &Path, read: Read<T>) -> T {
 /// Prints warnings about a file.
 pub(crate) fn warn_about(path: &Path, warnings: &[Diagnostic]) {
     for warning in warnings {
-        eprintln!("warning: {}", located(path, warning));
+        eprintln!("{}: {}", warning.severity.name(), located(path, warning));
     }
 }

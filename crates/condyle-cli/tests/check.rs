@@ -57,7 +57,7 @@ fn nothing_wrong_is_0() {
     let folder = Folder::new("check-sound");
     folder.write("m.osim", hinge("0 2", true)).write("m.mot", mot(&[0.0, 50.0, 100.0]));
     let run = folder.condyle(&["check", "m.osim"]);
-    assert_eq!(text(&run, 0), "m.osim: nothing to remark\n");
+    assert_eq!(text(&run, 0), "m.osim: no findings\n");
     let run = folder.condyle(&["check", "m.osim", "m.mot", "--json"]);
     let answer = json(&run, 0);
     assert_eq!(answer["model"], "hinge");

@@ -9,9 +9,9 @@
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
-use crate::diagnostic::{Diagnostic, Error, Place, Read, Warnings};
 use crate::table::{AngleUnit, Table};
 use crate::text::{Line, check_size, decimal, lines, number, read_decoded};
+use condyle_diagnostics::{Diagnostic, Error, Place, Read, Warnings};
 
 /// Reads a table.
 ///
@@ -67,7 +67,7 @@ pub fn read(text: &str) -> Result<Read<Table>, Error> {
         names.remove(0);
     } else {
         warnings.push(
-            Diagnostic::new("csv/no-time", "the first column is not `time`")
+            Diagnostic::warning("csv/no-time", "the first column is not `time`")
                 .at(names_line.place())
                 .with_help("rows are numbered instead"),
         );
@@ -278,7 +278,7 @@ fn add_row(
     }
     if cells.len() < expected {
         warnings.add("csv/short-row", || {
-            Diagnostic::new("csv/short-row", "the row ends early").at(line.place()).with_help(
+            Diagnostic::warning("csv/short-row", "the row ends early").at(line.place()).with_help(
                 format!("expected {expected} cells, found {}; the rest is NaN", cells.len()),
             )
         });
@@ -313,7 +313,7 @@ fn add_row(
         }
         if time == *last {
             warnings.add("csv/same-time", || {
-                Diagnostic::new("csv/same-time", format!("time {time} s is repeated"))
+                Diagnostic::warning("csv/same-time", format!("time {time} s is repeated"))
                     .at(line.place())
             });
         }
@@ -324,7 +324,8 @@ fn add_row(
     table.times.push(time);
     if commas > 0 {
         warnings.add("csv/decimal-comma", || {
-            Diagnostic::new("csv/decimal-comma", "decimals are marked by commas").at(line.place())
+            Diagnostic::warning("csv/decimal-comma", "decimals are marked by commas")
+                .at(line.place())
         });
     }
     Ok(())

@@ -16,7 +16,7 @@
 //! | XML, for readers of models | [`XmlDocument`] | |
 
 pub mod csv;
-mod diagnostic;
+
 pub mod document;
 pub mod glb;
 pub mod opensim;
@@ -27,7 +27,7 @@ pub mod text;
 pub mod trc;
 pub mod xml;
 
-pub use diagnostic::{Diagnostic, Error, Place, Read, nearest};
+pub use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Subject, nearest};
 pub use recording::{Gap, LengthUnit, Recording};
 pub use table::{AngleUnit, Table, coordinate_name};
 pub use xml::{Element, XmlDocument};

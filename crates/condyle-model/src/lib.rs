@@ -49,6 +49,6 @@ pub use component::{Component, Source};
 pub use evaluate::{Jacobian, Mode, Pose, Program, SizeMismatch};
 pub use limit::{Cone, ConeError, ConePoint, Legal, Projected, Projection, Range};
 pub use model::{
-    Closure, Coordinate, CoordinateId, CoordinateKind, Finding, JointSet, JointSetId, Marker,
-    Model, ModelBuilder, NameError, Segment, SegmentId, Severity, UpAxis,
+    Closure, Coordinate, CoordinateId, CoordinateKind, JointSet, JointSetId, Marker, Model,
+    ModelBuilder, Segment, SegmentId, UpAxis,
 };

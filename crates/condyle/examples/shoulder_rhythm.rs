@@ -96,7 +96,7 @@ impl Shoulder {
     fn read(text: &str) -> Result<Self, Box<dyn Error>> {
         let read =
             document::read(text, &mut |_| Err("it stands alone".into())).map_err(|errors| {
-                errors.into_iter().map(|e| e.message).collect::<Vec<_>>().join("\n")
+                errors.iter().map(|e| e.message.clone()).collect::<Vec<_>>().join("\n")
             })?;
         let model = read.value.model;
         let program = Program::compile(&model);

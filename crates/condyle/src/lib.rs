@@ -59,11 +59,12 @@ pub mod scene;
 pub mod shipped;
 pub mod tracking;
 
+pub use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Subject};
 pub use condyle_formats as formats;
 pub use condyle_math as math;
 pub use condyle_model::{
     self as model, Component, Coordinate, CoordinateId, CoordinateKind, Jacobian, Mode, Model,
-    ModelBuilder, NameError, Pose, Program, Range, SegmentId, Source,
+    ModelBuilder, Pose, Program, Range, SegmentId, Source,
 };
 pub use motion::Motion;
 

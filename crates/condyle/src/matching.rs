@@ -47,7 +47,7 @@ pub fn match_markers(model: &Model, labels: &[String]) -> (Vec<Match>, Vec<Diagn
             taken[label] = true;
             matched[index] = Some(label);
             if !how.is_empty() {
-                warnings.push(Diagnostic::new(
+                warnings.push(Diagnostic::warning(
                     "track/guessed-marker",
                     format!(
                         "marker `{}` is taken for the model's `{}` {how}",

@@ -1,6 +1,7 @@
 //! The coordinates of a model over time, to and from tables.
 
-use condyle_formats::{AngleUnit, Diagnostic, Table, coordinate_name};
+use condyle_diagnostics::{Diagnostic, listed};
+use condyle_formats::{AngleUnit, Table, coordinate_name};
 use condyle_model::{CoordinateId, CoordinateKind, Mode, Model, Pose, Program};
 
 /// Stored numbers of all coordinates of one model, frame by frame, in radians and metres.
@@ -80,7 +81,7 @@ impl Motion {
         }
         if !absent.is_empty() {
             warnings.push(
-                Diagnostic::new("motion/absent", format!("no column for {}", listed(&absent)))
+                Diagnostic::warning("motion/absent", format!("no column for {}", listed(&absent)))
                     .with_help("these coordinates keep their defaults"),
             );
         }
@@ -94,7 +95,7 @@ impl Motion {
         if !extra.is_empty() {
             let message = format!("the model has no coordinate for {}", listed(&extra));
             warnings.push(
-                Diagnostic::new("motion/extra", message).with_help("these columns are ignored"),
+                Diagnostic::warning("motion/extra", message).with_help("these columns are ignored"),
             );
         }
         let defaults = model.defaults();
@@ -116,7 +117,7 @@ impl Motion {
             .collect();
         if gaps > 0 {
             warnings.push(
-                Diagnostic::new("motion/blank", format!("{gaps} cells hold no number"))
+                Diagnostic::warning("motion/blank", format!("{gaps} cells hold no number"))
                     .with_help("the coordinates keep their defaults there"),
             );
         }
@@ -155,13 +156,5 @@ impl Motion {
                 frame.copy_from_slice(pose.effective());
             }
         }
-    }
-}
-
-fn listed(names: &[String]) -> String {
-    let shown: Vec<String> = names.iter().take(6).map(|n| format!("`{n}`")).collect();
-    match names.len() - shown.len() {
-        0 => shown.join(", "),
-        more => format!("{} and {more} more", shown.join(", ")),
     }
 }

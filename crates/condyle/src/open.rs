@@ -23,14 +23,12 @@ pub struct OpenError {
 pub enum Cause {
     /// The system would not give it.
     Io(std::io::Error),
-    /// Its content is wrong.
-    Content(Error),
     /// Its content is wrong, perhaps in several places.
-    Document {
-        /// The text.
-        text: String,
-        /// Everything that is wrong with it.
-        errors: Vec<Diagnostic>,
+    Content {
+        /// What is wrong.
+        error: Error,
+        /// The text, of a document that people write.
+        text: Option<String>,
     },
     /// Its ending names no format that fits.
     Format {
@@ -55,9 +53,8 @@ impl fmt::Display for OpenError {
                     None => Ok(()),
                 }
             }
-            Cause::Content(error) => write!(f, "{}", located(&self.path, error.diagnostic())),
-            Cause::Document { errors, .. } => {
-                let lines: Vec<String> = errors.iter().map(|e| located(&self.path, e)).collect();
+            Cause::Content { error, .. } => {
+                let lines: Vec<String> = error.iter().map(|e| located(&self.path, e)).collect();
                 f.write_str(&lines.join("\n"))
             }
             Cause::Format { wanted, known } => {
@@ -81,14 +78,13 @@ impl std::error::Error for OpenError {}
 
 /// A diagnostic as compilers print it: `file:line:column: message (help)`.
 pub fn located(path: &Path, said: &Diagnostic) -> String {
-    let help = said.help.as_ref().map_or(String::new(), |help| format!(" ({help})"));
     let place = match said.place {
         Some(p) if p.line > 0 && p.column > 0 => format!(":{}:{}", p.line, p.column),
         Some(p) if p.line > 0 => format!(":{}", p.line),
         Some(p) => p.byte.map_or(String::new(), |byte| format!(": byte {byte}")),
         None => String::new(),
     };
-    format!("{}{place}: {}{help}", path.display(), said.message)
+    format!("{}{place}: {}", path.display(), said.sentence())
 }
 
 /// The largest file that is read, in bytes.
@@ -100,7 +96,10 @@ fn bytes(path: &Path) -> Result<Vec<u8>, OpenError> {
     if size > LARGEST {
         let error = Error::new("file/size", format!("the file has {size} bytes"))
             .with_help(format!("at most {LARGEST} are read"));
-        return Err(OpenError { path: path.to_owned(), cause: Cause::Content(error) });
+        return Err(OpenError {
+            path: path.to_owned(),
+            cause: Cause::Content { error, text: None },
+        });
     }
     std::fs::read(path).map_err(fail)
 }
@@ -109,7 +108,8 @@ fn read_with<T>(
     path: &Path,
     reader: impl FnOnce(&[u8]) -> Result<Read<T>, Error>,
 ) -> Result<Read<T>, OpenError> {
-    let content = |error| OpenError { path: path.to_owned(), cause: Cause::Content(error) };
+    let content =
+        |error| OpenError { path: path.to_owned(), cause: Cause::Content { error, text: None } };
     reader(&bytes(path)?).map_err(content)
 }
 
@@ -150,13 +150,13 @@ pub fn document(path: &Path) -> Result<Read<Document>, OpenError> {
     let mut include = |name: &str| {
         utf8(&beside(path, name)).map_err(|error| match error.cause {
             Cause::Io(error) => error.to_string(),
-            Cause::Content(error) => error.to_string(),
+            Cause::Content { error, .. } => error.to_string(),
             _ => "it is no text".to_owned(),
         })
     };
-    document::read(&text, &mut include).map_err(|errors| OpenError {
+    document::read(&text, &mut include).map_err(|error| OpenError {
         path: path.to_owned(),
-        cause: Cause::Document { text, errors },
+        cause: Cause::Content { error, text: Some(text) },
     })
 }
 
@@ -171,7 +171,7 @@ fn utf8(path: &Path) -> Result<String, OpenError> {
             let error = Error::new("toml/utf-8", "the text is not UTF-8")
                 .at(Place::at_line(line))
                 .with_help("save it as UTF-8");
-            Err(OpenError { path: path.to_owned(), cause: Cause::Content(error) })
+            Err(OpenError { path: path.to_owned(), cause: Cause::Content { error, text: None } })
         }
     }
 }

@@ -199,12 +199,12 @@ pub fn fit(model: &Model, recording: &Recording, plan: &Plan) -> Result<Scaled, 
     let mut warnings = vec![];
     let standing = Standing::find(model, recording, &mut warnings)?;
     if model.size_groups().is_empty() {
-        let said = Diagnostic::new("scale/no-groups", "the model names no size groups");
+        let said = Diagnostic::warning("scale/no-groups", "the model names no size groups");
         warnings
             .push(said.with_help("one factor is found for the whole body; add tables [size.…]"));
     }
     if model.components().iter().any(|c| matches!(c.component, Component::Custom(_))) {
-        let said = Diagnostic::new("scale/custom", "laws of kind `custom` keep their lengths");
+        let said = Diagnostic::warning("scale/custom", "laws of kind `custom` keep their lengths");
         warnings.push(said.with_help("nobody but their author knows which of their numbers are"));
     }
     let mut search = Search::new(model, &standing, plan);
@@ -241,13 +241,13 @@ pub fn fit(model: &Model, recording: &Recording, plan: &Plan) -> Result<Scaled, 
         let [least, most] = FACTORS;
         if factor.factor < least * (1.0 + 1e-6) || factor.factor > most * (1.0 - 1e-6) {
             let message = format!("the factor of `{}` ends at {:.2}", factor.name, factor.factor);
-            let said = Diagnostic::new("scale/bound", message);
+            let said = Diagnostic::warning("scale/bound", message);
             warnings.push(said.with_help("is the unit of the recording right?"));
         }
     }
     if !best.answer.status.is_solved() {
         let message = format!("the posture was not found for sure ({})", best.answer.status.name());
-        warnings.push(Diagnostic::new("scale/posture", message));
+        warnings.push(Diagnostic::warning("scale/posture", message));
     }
     let used = |name: &String| markers.iter().any(|m| m.name == *name);
     let names = model.markers().iter().map(|m| m.name.clone());
@@ -291,7 +291,7 @@ impl Standing {
             let strays = sway(&seen, place);
             if strays > STILL {
                 let message = format!("marker `{name}` moves by {:.0} mm", 1e3 * strays);
-                let said = Diagnostic::new("scale/moving", message);
+                let said = Diagnostic::warning("scale/moving", message);
                 warnings.push(said.with_help("it is left out: the person should stand still"));
                 moving.push(name.clone());
                 continue;
@@ -569,7 +569,7 @@ fn placed(
         }
         if moved > FAR {
             let message = format!("marker `{}` is moved by {:.0} mm", marker.name, 1e3 * moved);
-            let said = Diagnostic::new("scale/far", message);
+            let said = Diagnostic::warning("scale/far", message);
             warnings.push(said.with_help("is it the marker that the model means?"));
         }
         fits.push(MarkerFit { name: marker.name.clone(), error, moved });

@@ -128,7 +128,7 @@ impl Lost {
         );
         let help = "a node has sizes along its own axes only: give the joint frame of the segment \
                     the axes of its scale, on both sides";
-        Some(Diagnostic::new("scene/shear", message).with_help(help))
+        Some(Diagnostic::warning("scene/shear", message).with_help(help))
     }
 }
 

@@ -80,7 +80,7 @@ fn with(name: &str, note: &mut dyn FnMut(&str)) -> Result<Read<Document>, OpenEr
         note(file);
         included(file).map(str::to_owned)
     });
-    read.map_err(|errors| fail(Cause::Document { text: text.to_owned(), errors }))
+    read.map_err(|error| fail(Cause::Content { error, text: Some(text.to_owned()) }))
 }
 
 /// The text of an included file: another shipped model, or a part.

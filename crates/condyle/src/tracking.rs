@@ -210,7 +210,7 @@ fn note_unused_tasks(
         let list: Vec<String> = unused.iter().map(|n| format!("`{n}`")).collect();
         let message =
             format!("tasks for markers that model or recording lack: {}", list.join(", "));
-        warnings.push(Diagnostic::new("track/unused-task", message));
+        warnings.push(Diagnostic::warning("track/unused-task", message));
     }
 }
 
@@ -253,7 +253,7 @@ fn add_coordinate_tasks(
         let id = match model.find_coordinate(name) {
             Ok(id) => id,
             Err(error) => {
-                let said = Diagnostic::new("track/unknown-coordinate", format!("{error}"));
+                let said = Diagnostic::warning("track/unknown-coordinate", format!("{error}"));
                 warnings.push(said.with_help("the task is ignored"));
                 continue;
             }
@@ -268,7 +268,7 @@ fn add_coordinate_tasks(
             }
             (CoordinateTarget::FromFile, _) => {
                 let message = format!("no coordinate file gives values for `{name}`");
-                let said = Diagnostic::new("track/no-coordinate-file", message);
+                let said = Diagnostic::warning("track/no-coordinate-file", message);
                 warnings.push(said.with_help("the task is ignored"));
                 continue;
             }

@@ -1,6 +1,5 @@
 //! Each rule with a model that breaks it and nothing else, and one beside it that is sound.
 
-use condyle::lint::{self, Finding, Severity};
 use condyle::math::function::{Function, PiecewiseLinear, SimmSpline};
 use condyle::math::{Affine, Vec3};
 use condyle::model::component::{
@@ -9,16 +8,17 @@ use condyle::model::component::{
 use condyle::model::model::{Closure, Condition};
 use condyle::model::{Cone, ConePoint, Projection};
 use condyle::{CoordinateKind, Model, ModelBuilder, Range};
+use condyle::{Diagnostic, Severity, lint};
 
 /// What is found in a model that its builder accepts.
-fn found(builder: ModelBuilder) -> Vec<Finding> {
+fn found(builder: ModelBuilder) -> Vec<Diagnostic> {
     let model: Model = builder.build().expect("a model");
     lint::check(&model, &[])
 }
 
 /// The one thing that is found.
 #[track_caller]
-fn only(builder: ModelBuilder, severity: Severity, code: &str) -> Finding {
+fn only(builder: ModelBuilder, severity: Severity, code: &str) -> Diagnostic {
     let findings = found(builder);
     assert_eq!(findings.len(), 1, "{findings:#?}");
     assert_eq!((findings[0].severity, findings[0].code), (severity, code), "{findings:#?}");
@@ -44,6 +44,11 @@ fn hinge(range: Range, default: f64) -> ModelBuilder {
     b
 }
 
+/// The names of a finding's subjects.
+fn names(finding: &Diagnostic) -> Vec<&str> {
+    finding.subjects.iter().map(|subject| subject.name()).collect()
+}
+
 #[test]
 fn limits_that_cross() {
     // The builder refuses enforced ones, so only a declared range can get here.
@@ -51,7 +56,7 @@ fn limits_that_cross() {
     let finding = only(hinge(declared, -0.2), Severity::Error, "lint/crossing-range");
     // 0.1 and 0.4 radians: 180/π times as many degrees.
     assert!(finding.message.contains("lower limit -5.73° above its upper limit -22.92°"));
-    assert_eq!(finding.subjects, ["flexion"]);
+    assert_eq!(names(&finding), ["flexion"]);
     sound(hinge(Range { enforced: false, ..Range::new(-0.4, -0.1) }, -0.2));
 }
 
@@ -113,7 +118,7 @@ fn patella(upper: f64) -> ModelBuilder {
 #[test]
 fn ranges_beyond_the_knots_that_a_follower_reads() {
     let finding = only(patella(140.0), Severity::Warning, "lint/beyond-knots");
-    assert_eq!(finding.subjects, ["flexion", "patella/glide"]);
+    assert_eq!(names(&finding), ["flexion", "patella/glide"]);
     // 20° times 30 mm per radian = 10.47 mm.
     for part in ["may reach 140°", "ends at 120°", "last 20° are", "up to 10.47 mm"] {
         assert!(finding.message.contains(part), "{part}: {}", finding.message);
@@ -180,7 +185,7 @@ fn coordinates_that_move_nothing() {
     let set = b.joint_set("spare");
     b.coordinate(set, "slack", CoordinateKind::Translation);
     let finding = only(b, Severity::Warning, "lint/moves-nothing");
-    assert_eq!(finding.subjects, ["slack"]);
+    assert_eq!(names(&finding), ["slack"]);
 }
 
 /// Three hinges in one joint, the middle one with a range in degrees.
@@ -213,7 +218,7 @@ fn axes_that_are_nearly_one() {
         "lint/parallel-axes",
     );
     assert!(finding.message.contains("lie 4° apart"), "{}", finding.message);
-    assert_eq!(finding.subjects, ["first", "second"]);
+    assert_eq!(names(&finding), ["first", "second"]);
     let tilt = 6f64.to_radians();
     sound(triple([Vec3::Z, Vec3::new(tilt.sin(), 0.0, tilt.cos()), Vec3::Y], [-30.0, 30.0]));
 }
@@ -260,11 +265,11 @@ fn markers_far_away_and_in_one_place() {
     // 12 · √(0.1² + 0.2²) = 2.683
     assert!(finding.message.contains("2.683 m from the origin of `shank`"), "{}", finding.message);
     let finding = only(marked(&[("A", near), ("B", near)]), Severity::Note, "lint/marker-twins");
-    assert_eq!(finding.subjects, ["A", "B"]);
+    assert_eq!(names(&finding), ["A", "B"]);
     sound(marked(&[("A", near), ("B", other)]));
     let alike = marked(&[("RASI", near), ("Rasi", other)]);
     let finding = only(alike, Severity::Warning, "lint/alike-names");
-    assert_eq!(finding.subjects, ["RASI", "Rasi"]);
+    assert_eq!(names(&finding), ["RASI", "Rasi"]);
 }
 
 #[test]
@@ -413,16 +418,16 @@ fn a_side_that_is_missing() {
     let mut b = legs(|_, _, _, _, _| {});
     b.segment("toes_r", b.segment_at(3));
     let finding = only(b, Severity::Note, "lint/side-missing");
-    assert_eq!(finding.subjects, ["toes_r"]);
+    assert_eq!(names(&finding), ["toes_r"]);
 }
 
 #[test]
 fn warnings_of_readers_come_along() {
     let model = hinge(degrees(0.0, 90.0), 0.0).build().expect("a model");
     let said = [
-        condyle::formats::Diagnostic::new("osim/unknown-constraint", "it is not known"),
-        condyle::formats::Diagnostic::new("xml/prefix", "a prefix"),
-        condyle::formats::Diagnostic::new("model/default-outside-range", "said by a rule instead"),
+        Diagnostic::warning("osim/unknown-constraint", "it is not known"),
+        Diagnostic::note("xml/prefix", "a prefix"),
+        Diagnostic::warning("model/default-outside-range", "said by a rule instead"),
     ];
     let findings = lint::check(&model, &said);
     let codes: Vec<_> = findings.iter().map(|f| (f.severity, f.code)).collect();
@@ -471,7 +476,7 @@ fn a_cone_whose_projection_jumps() {
     sound(in_a_cone(60.0, false));
     // In a dent two sides can be equally near.
     let finding = only(in_a_cone(60.0, true), Severity::Warning, "lint/cone-jump");
-    assert_eq!(finding.subjects, ["a", "b", "c"]);
+    assert_eq!(names(&finding), ["a", "b", "c"]);
     // Ranges that stay inside the dented cone never project.
     sound(in_a_cone(2.0, true));
 }

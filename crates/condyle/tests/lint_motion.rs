@@ -2,11 +2,11 @@
 
 use condyle::formats::{AngleUnit, Table};
 use condyle::lint::motion::{MotionCheck, check};
-use condyle::lint::{Finding, Severity};
 use condyle::math::function::Function;
 use condyle::math::{Quat, Vec3};
 use condyle::model::model::{Closure, Condition};
 use condyle::{CoordinateKind, Model, ModelBuilder, Range};
+use condyle::{Diagnostic, Severity};
 
 /// A thigh on a slide, and a knee whose patella follows it by 10 mm per radian.
 fn leg() -> ModelBuilder {
@@ -47,7 +47,7 @@ fn motion(columns: &[&str], rows: &[&[f64]]) -> Table {
 }
 
 fn codes(check: &MotionCheck) -> Vec<(Severity, &str)> {
-    check.findings.iter().map(|f: &Finding| (f.severity, f.code)).collect()
+    check.findings.iter().map(|f: &Diagnostic| (f.severity, f.code)).collect()
 }
 
 fn near(found: f64, expected: f64) {

@@ -4,10 +4,10 @@ use super::Outcome;
 use crate::failure::Failure;
 use crate::output::{self, columns};
 use clap::Args;
+use condyle::lint;
 use condyle::lint::motion::MotionCheck;
-use condyle::lint::{self, Finding, Severity};
 use condyle::open::{Cause, OpenError};
-use condyle::{CoordinateKind, Model, open};
+use condyle::{CoordinateKind, Diagnostic, Model, Severity, Subject, open};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -35,15 +35,14 @@ impl Check {
         if let Some(path) = &self.motion {
             let table = open::table(path)?;
             let mut check = lint::motion::check(model, &table.value);
-            let said: Vec<Finding> = table.warnings.iter().map(Finding::from).collect();
-            check.findings.splice(0..0, said);
+            check.findings.splice(0..0, table.warnings);
             motion = Some(check);
         }
         if self.json {
             if let Some(motion) = &motion {
                 findings.extend(motion.findings.iter().cloned());
             }
-            let broken = findings.iter().any(Finding::counts);
+            let broken = findings.iter().any(lint::counts);
             output::print_json(&json!({
                 "model": model.name(),
                 "findings": findings.iter().map(finding_json).collect::<Vec<_>>(),
@@ -53,7 +52,7 @@ impl Check {
         }
         let mut text = head(&self.model.display().to_string(), &findings);
         grouped(&mut text, &findings);
-        let mut broken = findings.iter().any(Finding::counts);
+        let mut broken = findings.iter().any(lint::counts);
         if let (Some(motion), Some(path)) = (&motion, &self.motion) {
             text.push('\n');
             motion_text(&mut text, &path.display().to_string(), model, motion);
@@ -66,19 +65,17 @@ impl Check {
     /// A file that was understood, but whose model contradicts itself, is a finding; any other
     /// error is unusable input.
     fn contradictory(&self, error: OpenError) -> Result<Outcome, Failure> {
-        let said = match &error.cause {
-            Cause::Content(content) if content.code().starts_with("model/") => content.diagnostic(),
+        let findings = match &error.cause {
+            Cause::Content { error, text: None } if error.is_contradiction() => error.to_vec(),
             _ => return Err(error.into()),
         };
-        let finding = Finding { severity: Severity::Error, ..Finding::from(said) };
         if self.json {
             output::print_json(&json!({
                 "model": Value::Null,
-                "findings": [finding_json(&finding)],
+                "findings": findings.iter().map(finding_json).collect::<Vec<_>>(),
                 "motion": Value::Null,
             }))?;
         } else {
-            let findings = [finding];
             let mut text = head(&self.model.display().to_string(), &findings);
             grouped(&mut text, &findings);
             output::print(text.as_bytes())?;
@@ -91,21 +88,21 @@ fn outcome(broken: bool) -> Outcome {
     if broken { Outcome::DoesNotHold } else { Outcome::Done }
 }
 
-fn count(findings: &[Finding], severity: Severity) -> String {
+fn count(findings: &[Diagnostic], severity: Severity) -> String {
     let n = findings.iter().filter(|f| f.severity == severity).count();
     format!("{n} {}{}", severity.name(), if n == 1 { "" } else { "s" })
 }
 
-fn head(name: &str, findings: &[Finding]) -> String {
+fn head(name: &str, findings: &[Diagnostic]) -> String {
     if findings.is_empty() {
-        return format!("{name}: nothing to remark\n");
+        return format!("{name}: no findings\n");
     }
     let counts = [Severity::Error, Severity::Warning, Severity::Note];
     format!("{name}: {}\n", counts.map(|severity| count(findings, severity)).join(", "))
 }
 
 /// Findings under the rule that made them, and advice that several share said once.
-fn grouped(text: &mut String, findings: &[Finding]) {
+fn grouped(text: &mut String, findings: &[Diagnostic]) {
     let mut rules: Vec<(Severity, &str)> = vec![];
     for finding in findings {
         let rule = (finding.severity, finding.code);
@@ -115,14 +112,14 @@ fn grouped(text: &mut String, findings: &[Finding]) {
     }
     for (severity, code) in rules {
         let _ = writeln!(text, "\n{} {code}", severity.name());
-        let mut own: Vec<&Finding> =
+        let mut own: Vec<&Diagnostic> =
             findings.iter().filter(|f| (f.severity, f.code) == (severity, code)).collect();
         own.sort_by_key(|f| own_order(findings, &f.help));
         for same in own.chunk_by(|a, b| a.help == b.help) {
             // A list of thirty alike is read by nobody.
             let shown = if same.len() > MOST_ALIKE + 1 { MOST_ALIKE } else { same.len() };
             for finding in &same[..shown] {
-                let _ = writeln!(text, "  {}", finding.message);
+                let _ = writeln!(text, "  {}", placed(finding));
             }
             if shown < same.len() {
                 let _ = writeln!(text, "  and {} more (--json lists all)", same.len() - shown);
@@ -138,16 +135,22 @@ fn grouped(text: &mut String, findings: &[Finding]) {
 const MOST_ALIKE: usize = 8;
 
 /// Where a help was first given, so that findings which share it stand together.
-fn own_order(findings: &[Finding], help: &str) -> Option<usize> {
+fn own_order(findings: &[Diagnostic], help: &str) -> Option<usize> {
     findings.iter().position(|f| f.help == help)
 }
 
-fn finding_json(finding: &Finding) -> Value {
+/// The message behind its place in the file, where it has one.
+fn placed(finding: &Diagnostic) -> String {
+    let place = finding.place.map_or(String::new(), |place| format!("{place}: "));
+    format!("{place}{}", finding.message)
+}
+
+fn finding_json(finding: &Diagnostic) -> Value {
     json!({
         "severity": finding.severity.name(),
         "code": finding.code,
-        "message": finding.message,
-        "subjects": finding.subjects,
+        "message": placed(finding),
+        "subjects": finding.subjects.iter().map(Subject::name).collect::<Vec<_>>(),
         "help": finding.help,
     })
 }
@@ -249,7 +252,7 @@ fn motion_text(text: &mut String, name: &str, model: &Model, motion: &MotionChec
         sources.dedup();
         let _ = writeln!(text, "    -> {}", sources.join("; "));
     }
-    let rest: Vec<Finding> =
+    let rest: Vec<Diagnostic> =
         motion.findings.iter().filter(|f| f.code != "motion/outside-range").cloned().collect();
     grouped(text, &rest);
 }

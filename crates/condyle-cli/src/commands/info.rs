@@ -106,10 +106,10 @@ fn xml(path: &Path) -> Result<Read<Content>, Failure> {
         Ok(tasks) => Ok(tasks.map(Content::Tasks)),
         Err(error) if error.code() == "setup/no-tasks" => {
             let place = match &no_model.cause {
-                Cause::Content(error) => error.place(),
+                Cause::Content { error, .. } => error.place(),
                 _ => None,
             };
-            let said = formats::Diagnostic::new(
+            let said = formats::Diagnostic::error(
                 "info/unknown",
                 "the file holds no <Model>, no <InverseKinematicsTool> and no <IKTaskSet>",
             );
@@ -122,5 +122,5 @@ fn xml(path: &Path) -> Result<Read<Content>, Failure> {
 }
 
 fn is_about(error: &OpenError, code: &str) -> bool {
-    matches!(&error.cause, Cause::Content(content) if content.code() == code)
+    matches!(&error.cause, Cause::Content { error, .. } if error.code() == code)
 }

@@ -84,7 +84,7 @@ fn names_that_lead_nowhere_or_everywhere() {
     let said = folder.condyle(&["fk", "leg.osim", "--pose", "unknown.json"]).refused();
     assert_eq!(
         said,
-        "error: unknown.json: unknown coordinate `knee_angel`; did you mean `knee_angle`?\n"
+        "error: unknown.json: unknown coordinate `knee_angel` (did you mean `knee_angle`?)\n"
     );
     folder.write("twice.json", r#"[{}, {"flexion": 1}]"#);
     let said = folder.condyle(&["fk", "leg.osim", "--pose", "twice.json"]).refused();

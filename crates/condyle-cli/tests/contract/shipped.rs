@@ -129,7 +129,7 @@ fn a_name_does_where_a_file_does() {
     let info = folder.condyle(&["info", "legs", "--json"]).json();
     assert_eq!((&info["kind"], &info["name"]), (&json!("model"), &json!("legs")));
     let checked = folder.condyle(&["check", "legs"]);
-    assert_eq!(checked.expect(0), "legs: nothing to remark\n");
+    assert_eq!(checked.expect(0), "legs: no findings\n");
     folder.write("p.json", r#"{"knee_angle_r": 1.0}"#);
     let fk = folder.condyle(&["fk", "legs", "--pose", "p.json"]).json();
     assert!(fk["frames"][0]["segments"]["tibia_l"].is_array());

@@ -3,7 +3,7 @@
 
 use super::source::{Angles, Name, Sources, Spot};
 use super::tree::{Entry, Node, Value};
-use crate::diagnostic::nearest;
+use condyle_diagnostics::nearest;
 use condyle_math::{Affine, EulerOrder, Mat3, Vec3};
 use condyle_model::component::Registry;
 use std::collections::HashMap;
@@ -178,12 +178,14 @@ impl Reader<'_> {
             }
             None => {}
         }
-        let help = match nearest(name, self.constants.keys().map(String::as_str)) {
-            Some(near) => format!("did you mean `${near}`?"),
-            None => "name it in the table `constants`".to_owned(),
-        };
-        let message = format!("unknown constant `${name}`");
-        self.sources.error(spot, "model/unknown-name", message, help);
+        let known = self.constants.keys().map(String::as_str);
+        self.sources.error_with(spot, "model/unknown-name", || {
+            let help = match nearest(name, known) {
+                Some(near) => format!("did you mean `${near}`?"),
+                None => "name it in the table `constants`".to_owned(),
+            };
+            (format!("unknown constant `${name}`"), help)
+        });
         None
     }
 

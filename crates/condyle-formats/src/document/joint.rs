@@ -7,7 +7,7 @@ use super::law::Law;
 use super::mirror::escaped;
 use super::source::Name;
 use super::tree::{Entry, Value};
-use crate::diagnostic::nearest;
+use condyle_diagnostics::nearest;
 use condyle_math::function::Function;
 use condyle_math::{EulerOrder, Vec3};
 use condyle_model::component::Along;

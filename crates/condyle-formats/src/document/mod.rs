@@ -45,7 +45,7 @@ pub use keys::keys;
 pub use render::render;
 pub use write::write;
 
-use crate::diagnostic::{Diagnostic, Read};
+use condyle_diagnostics::{Error, Read};
 use condyle_model::Model;
 use condyle_model::component::Registry;
 use fields::Reader;
@@ -108,7 +108,7 @@ impl Document {
 pub fn read(
     text: &str,
     include: &mut dyn FnMut(&str) -> Result<String, String>,
-) -> Result<Read<Document>, Vec<Diagnostic>> {
+) -> Result<Read<Document>, Error> {
     read_with(text, include, &Registry::default())
 }
 
@@ -158,7 +158,7 @@ pub fn read_with(
     text: &str,
     include: &mut dyn FnMut(&str) -> Result<String, String>,
     laws: &Registry,
-) -> Result<Read<Document>, Vec<Diagnostic>> {
+) -> Result<Read<Document>, Error> {
     let mut sources = Sources::default();
     let model = tree::load(&mut sources, text, include).and_then(|entries| {
         let mut reader = Reader { sources: &mut sources, constants: HashMap::new(), laws };
@@ -168,6 +168,6 @@ pub fn read_with(
     let warnings = sources.finish()?;
     match model {
         Some(model) => Ok(Read { value: Document { model, source: text.to_owned() }, warnings }),
-        None => Err(vec![Diagnostic::new("model/unknown", "the document holds no model")]),
+        None => Err(Error::new("model/unknown", "the document holds no model")),
     }
 }

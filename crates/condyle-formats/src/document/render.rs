@@ -1,6 +1,6 @@
 //! Diagnostics with the line that they are about, and a caret.
 
-use crate::diagnostic::Diagnostic;
+use condyle_diagnostics::Diagnostic;
 use std::fmt::Write;
 
 /// How much of a line is shown, in letters.
@@ -10,7 +10,7 @@ const WIDTH: usize = 100;
 ///
 /// ```
 /// use condyle_formats::{Diagnostic, Place, document};
-/// let said = Diagnostic::new("x/y", "unknown key `parnet`").at(Place::at(1, 1));
+/// let said = Diagnostic::error("x/y", "unknown key `parnet`").at(Place::at(1, 1));
 /// let shown = document::render("leg.toml", "parnet = 1", &[said.with_help("did you mean `parent`?")]);
 /// assert_eq!(shown, "leg.toml:1:1: unknown key `parnet`
 ///   |
@@ -22,12 +22,10 @@ const WIDTH: usize = 100;
 pub fn render(name: &str, text: &str, said: &[Diagnostic]) -> String {
     let mut out = String::new();
     for one in said {
-        let help = one.help.as_deref().unwrap_or_default();
+        let help = one.help.as_str();
         let place = one.place.filter(|p| p.line > 0);
         let Some(place) = place else {
-            let space = if help.is_empty() { "" } else { " " };
-            let help = if help.is_empty() { String::new() } else { format!("({help})") };
-            let _ = writeln!(out, "{name}: {}{space}{help}", plain(&one.message));
+            let _ = writeln!(out, "{name}: {}", plain(&one.sentence()));
             continue;
         };
         let column = place.column.max(1);

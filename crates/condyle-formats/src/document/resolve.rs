@@ -3,13 +3,12 @@
 use super::draft::{ConditionDraft, Draft, Holder};
 use super::law::Law;
 use super::source::{Name, Sources, Spot};
-use crate::diagnostic::{Diagnostic, nearest};
+use condyle_diagnostics::{Diagnostic, Read, Severity, Subject, did_you_mean, nearest};
 use condyle_math::{Affine, Vec3};
 use condyle_model::component::{Component, Place, PortType, Product};
-use condyle_model::model::{ComponentId, Condition, JointSetId};
+use condyle_model::model::{AXIS_LENGTH, ComponentId, Condition, JointSetId};
 use condyle_model::{
-    Closure, CoordinateId, CoordinateKind, Finding, Model, ModelBuilder, SegmentId, Severity,
-    Source,
+    Closure, CoordinateId, CoordinateKind, Model, ModelBuilder, SegmentId, Source,
 };
 use std::collections::{HashMap, HashSet};
 
@@ -34,18 +33,17 @@ pub(super) fn build(draft: Draft, sources: &mut Sources) -> Option<Model> {
         sets: HashMap::new(),
         names: HashMap::new(),
         broken: HashSet::new(),
-        places: vec![],
+        places: HashMap::new(),
     };
     resolver.all(draft);
     let Resolver { sources, builder, places, .. } = resolver;
     if sources.failed() {
         return None;
     }
-    match builder.build_with_findings() {
-        Ok((model, findings)) => {
-            for finding in findings.into_iter().filter(|f| f.code != "model/axis-length").take(100)
-            {
-                let said = located(sources, &places, finding);
+    match builder.build_with_warnings() {
+        Ok(Read { value: model, warnings }) => {
+            for warning in warnings.into_iter().filter(|w| w.code != AXIS_LENGTH).take(100) {
+                let said = located(sources, &places, warning);
                 sources.warn(said);
             }
             let whole = Spot::default();
@@ -67,9 +65,9 @@ pub(super) fn build(draft: Draft, sources: &mut Sources) -> Option<Model> {
             Some(model)
         }
         Err(findings) => {
-            let errors = findings.into_iter().filter(|f| f.severity == Severity::Error);
-            for finding in errors.take(100) {
-                let said = located(sources, &places, finding);
+            let errors = findings.into_diagnostics();
+            for error in errors.into_iter().filter(|e| e.severity == Severity::Error).take(100) {
+                let said = located(sources, &places, error);
                 sources.push(said);
             }
             None
@@ -77,18 +75,11 @@ pub(super) fn build(draft: Draft, sources: &mut Sources) -> Option<Model> {
     }
 }
 
-/// A finding at the table that it is about.
-fn located(sources: &Sources, places: &[(String, Spot)], finding: Finding) -> Diagnostic {
-    let circle = finding.message.split_once(": ").map(|(_, names)| names);
-    let first = circle.and_then(|names| names.split(" -> ").next()).unwrap_or_default();
-    let lower = finding.message.to_lowercase();
-    // Phrases with a name in quotes are parts of sentences, bare names parts of circles.
-    let found = places.iter().find(|(phrase, _)| match phrase.contains('`') {
-        true => lower.contains(&phrase.to_lowercase()),
-        false => !first.is_empty() && phrase == first,
-    });
-    let spot = found.map_or(Spot::default(), |(_, spot)| *spot);
-    sources.said(spot, finding.code, finding.message).with_help(finding.help)
+/// What a builder found, at the table of its first subject.
+fn located(sources: &Sources, places: &HashMap<Subject, Spot>, found: Diagnostic) -> Diagnostic {
+    let spot = found.subjects.first().and_then(|subject| places.get(subject)).copied();
+    let said = sources.said(spot.unwrap_or_default(), found.severity, found.code, found.message);
+    said.about_all(found.subjects).with_help(found.help)
 }
 
 /// The length of all chains of factors that segments are moved by.
@@ -138,8 +129,8 @@ struct Resolver<'s> {
     names: HashMap<(String, String), Meaning>,
     /// Components that could not be read, by joint set and name; joints with no name behind.
     broken: HashSet<(String, String)>,
-    /// What findings call things, and where those stand.
-    places: Vec<(String, Spot)>,
+    /// Where the table of each subject stands.
+    places: HashMap<Subject, Spot>,
 }
 
 impl Resolver<'_> {
@@ -149,8 +140,7 @@ impl Resolver<'_> {
         for s in &draft.segments {
             let id = self.builder.segment(&s.name.text, None);
             self.builder.place_joint_frames(id, s.in_parent, s.in_itself);
-            self.places.push((format!("segment `{}`", s.name.text), s.name.spot));
-            self.places.push((s.name.text.clone(), s.name.spot));
+            self.places.insert(Subject::Segment(s.name.text.clone()), s.name.spot);
             if self.segments.insert(s.name.text.clone(), id).is_some() {
                 self.twice("segment", &s.name);
             }
@@ -176,9 +166,8 @@ impl Resolver<'_> {
             (made.default, made.range, made.locked) = (c.default, c.range, c.locked);
             made.source.clone_from(&c.source);
             let key = format!("{}/{}", c.set, c.name.text);
-            for name in [&c.name.text, &key] {
-                self.places.push((format!("coordinate `{name}`"), c.name.spot));
-                self.places.push((name.clone(), c.name.spot));
+            for key in [c.name.text.clone(), key] {
+                self.places.insert(Subject::Coordinate(key), c.name.spot);
             }
             let port = match c.kind {
                 CoordinateKind::Orientation => PortType::Orientation,
@@ -197,7 +186,7 @@ impl Resolver<'_> {
             let Source::Output(id, _) = source else { continue };
             let (port, outputs) = c.law.outputs();
             self.mean(&c.set, &c.name, Meaning { source, port, outputs });
-            self.places.push((format!("{}.{}", c.set, c.name.text), c.name.spot));
+            self.places.insert(Subject::component(&c.set, &c.name.text), c.name.spot);
             components.push((id, c.set, c.name, c.law, c.ports));
         }
         for (id, set, follows) in coordinates {
@@ -228,14 +217,9 @@ impl Resolver<'_> {
                 .collect();
             let connected: Option<Vec<Source>> = connected.into_iter().collect();
             let Some(connected) = connected else { continue };
-            let (before, spot) = (self.sources.count(), name.spot);
+            let before = self.sources.count();
             match law.build(connected, &mut |name| self.segment(name)) {
-                Ok(component) => {
-                    let (name, kind) = (&name.text, component.kind());
-                    let phrase = format!("component `{name}` ({kind}) of joint set `{set}`");
-                    self.places.push((phrase, spot));
-                    *self.builder.component_mut(id) = component;
-                }
+                Ok(component) => *self.builder.component_mut(id) = component,
                 // Unknown segments were named already.
                 Err(_) if self.sources.count() > before => {}
                 Err(why) => {
@@ -247,10 +231,11 @@ impl Resolver<'_> {
         self.outputs(&draft.outputs);
         for m in &draft.markers {
             let segment = self.holder(&m.segment);
-            self.places.push((format!("`{}`", m.name.text), m.name.spot));
+            self.places.insert(Subject::Marker(m.name.text.clone()), m.name.spot);
             self.builder.marker(&m.name.text, segment, m.point);
         }
         for c in &draft.closures {
+            self.places.insert(Subject::Closure(c.name.text.clone()), c.name.spot);
             if let Some(condition) = self.condition(&c.condition) {
                 self.builder.closure(Closure { name: c.name.text.clone(), condition });
             }
@@ -336,12 +321,12 @@ impl Resolver<'_> {
         if let Some(id) = self.segments.get(&name.text) {
             return Some(*id);
         }
-        let help = match nearest(&name.text, self.segments.keys().map(String::as_str)) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => "name a segment of this model; leave it away for the world".to_owned(),
-        };
-        let message = format!("unknown segment `{}`", name.text);
-        self.sources.error(name.spot, "model/unknown-name", message, help);
+        self.sources.error_with(name.spot, "model/unknown-name", || {
+            let known = self.segments.keys().map(String::as_str);
+            let otherwise = || "name a segment of this model; omit it for the world".to_owned();
+            let help = did_you_mean(&name.text, known, otherwise);
+            (format!("unknown segment `{}`", name.text), help)
+        });
         None
     }
 
@@ -451,21 +436,21 @@ impl Resolver<'_> {
             [first, ..] => (own, first.as_str()),
             [] => (own, ""),
         };
-        let known = self.names.keys().filter(|(s, _)| s == set).map(|(_, n)| n.as_str());
-        let help = if let Some(near) = nearest(name, known) {
-            match set == own {
-                true => format!("did you mean `{near}`?"),
-                false => format!("did you mean `{set}.{near}`?"),
-            }
-        } else if let Some((other, _)) =
-            self.names.keys().filter(|(_, n)| n == name).min_by_key(|(s, _)| s.clone())
-        {
-            format!("did you mean `{other}.{name}`?")
-        } else {
-            "name a coordinate or component of this joint set, or `set.name` of another".to_owned()
-        };
-        let message = format!("unknown name `{}`", port.text);
-        self.sources.error(port.spot, "model/unknown-name", message, help);
+        self.sources.error_with(port.spot, "model/unknown-name", || {
+            let known = self.names.keys().filter(|(s, _)| s == set).map(|(_, n)| n.as_str());
+            let elsewhere = || self.names.keys().filter(|(_, n)| n == name).map(|(s, _)| s).min();
+            let help = match nearest(name, known) {
+                Some(near) if set == own => format!("did you mean `{near}`?"),
+                Some(near) => format!("did you mean `{set}.{near}`?"),
+                None => match elsewhere() {
+                    Some(other) => format!("did you mean `{other}.{name}`?"),
+                    None => "name a coordinate or component of this joint set, or `set.name` of \
+                             another"
+                        .to_owned(),
+                },
+            };
+            (format!("unknown name `{}`", port.text), help)
+        });
     }
 }
 

@@ -1,6 +1,6 @@
 //! The texts of a document, places in them, and what is wrong with them.
 
-use crate::diagnostic::{Diagnostic, Place};
+use condyle_diagnostics::{Diagnostic, Error, Place, Severity};
 
 /// How many errors are kept; a file that has more has one reason for them.
 const MOST_ERRORS: usize = 50;
@@ -90,14 +90,20 @@ impl Sources {
     }
 
     /// Something said of a spot. What stands in an included text is said where it is included.
-    pub(super) fn said(&self, spot: Spot, code: &'static str, message: String) -> Diagnostic {
+    pub(super) fn said(
+        &self,
+        spot: Spot,
+        severity: Severity,
+        code: &'static str,
+        message: String,
+    ) -> Diagnostic {
         let file = &self.files[spot.file as usize];
         match file.included_at {
-            None => Diagnostic::new(code, message).at(self.place(spot)),
+            None => Diagnostic::new(severity, code, message).at(self.place(spot)),
             Some(at) => {
                 let Place { line, column, .. } = self.place(spot);
                 let message = format!("{}:{line}:{column}: {message}", file.name);
-                Diagnostic::new(code, message).at(self.place(at))
+                Diagnostic::new(severity, code, message).at(self.place(at))
             }
         }
     }
@@ -117,9 +123,20 @@ impl Sources {
         message: impl Into<String>,
         help: impl Into<String>,
     ) {
+        self.error_with(spot, code, || (message.into(), help.into()));
+    }
+
+    /// An error whose message and help are made only if it is kept.
+    pub(super) fn error_with<M: Into<String>>(
+        &mut self,
+        spot: Spot,
+        code: &'static str,
+        say: impl FnOnce() -> (M, String),
+    ) {
         if self.errors.len() < MOST_ERRORS {
-            let said = self.said(spot, code, message.into()).with_help(help);
-            self.errors.push(said);
+            let (message, help) = say();
+            let said = self.said(spot, Severity::Error, code, message.into());
+            self.errors.push(said.with_help(help));
         } else {
             self.surplus += 1;
         }
@@ -138,15 +155,12 @@ impl Sources {
     }
 
     /// Errors in the order of the text, or else the warnings.
-    pub(super) fn finish(mut self) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
-        if self.errors.is_empty() {
-            return Ok(self.warnings);
-        }
+    pub(super) fn finish(mut self) -> Result<Vec<Diagnostic>, Error> {
         self.errors.sort_by_key(|e| e.place.map_or(u64::MAX, |p| p.byte.unwrap_or(0)));
         if self.surplus > 0 {
             let message = format!("and {} more errors", self.surplus);
-            self.errors.push(Diagnostic::new("model/more", message));
+            self.errors.push(Diagnostic::error("model/more", message));
         }
-        Err(self.errors)
+        Error::of(self.errors).map_or(Ok(self.warnings), Err)
     }
 }

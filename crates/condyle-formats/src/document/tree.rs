@@ -2,7 +2,7 @@
 
 use super::keys::KINDS;
 use super::source::{Angles, Name, Sources, Spot};
-use crate::diagnostic::nearest;
+use condyle_diagnostics::nearest;
 use std::collections::HashMap;
 use toml::de::{DeTable, DeValue};
 

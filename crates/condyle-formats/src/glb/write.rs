@@ -12,7 +12,7 @@ use gltf_json::{Index, Material, Root};
 use super::pack::Pack;
 use super::scene::{LocalPose, Scene, UpAxis};
 use super::shape::{Finish, Shape, Triangles};
-use crate::diagnostic::Error;
+use condyle_diagnostics::Error;
 
 /// Writes a scene.
 ///

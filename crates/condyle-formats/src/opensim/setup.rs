@@ -4,8 +4,8 @@
 //! or blank means none. The task set may stand inside or in a file of its own; then
 //! [`IkTasks::File`] names it and [`read_tasks`] reads it.
 
-use crate::diagnostic::{Diagnostic, Error, Read, Warnings, nearest};
 use crate::xml::{Element, XmlDocument};
+use condyle_diagnostics::{Diagnostic, Error, Read, Warnings, nearest};
 
 /// What an inverse kinematics run is told to do.
 #[derive(Debug, Clone, PartialEq)]
@@ -174,7 +174,7 @@ fn from_document(document: Read<XmlDocument>) -> Result<Read<IkSetup>, Error> {
             && distance(child.name(), meant) <= 3
         {
             warnings.add("setup/unknown", || {
-                Diagnostic::new("setup/unknown", format!("<{}> is not known", child.name()))
+                Diagnostic::warning("setup/unknown", format!("<{}> is not known", child.name()))
                     .at(child.place())
                     .with_help(format!("it was skipped; did you mean <{meant}>?"))
             });
@@ -183,7 +183,7 @@ fn from_document(document: Read<XmlDocument>) -> Result<Read<IkSetup>, Error> {
     let tasks = match tool.child("IKTaskSet") {
         None => {
             warnings.push(
-                Diagnostic::new("setup/no-tasks", format!("{} has no tasks", tool.describe()))
+                Diagnostic::warning("setup/no-tasks", format!("{} has no tasks", tool.describe()))
                     .at(tool.place()),
             );
             IkTasks::Inline(IkTaskSet::default())
@@ -215,7 +215,7 @@ fn tool<'d>(root: Element<'d>, warnings: &mut Warnings) -> Result<Element<'d>, E
     }
     if let Some(tool) = candidates().find(|e| distance(e.name(), TOOL) <= 2) {
         warnings.push(
-            Diagnostic::new("setup/misspelt", format!("<{}> is not known", tool.name()))
+            Diagnostic::warning("setup/misspelt", format!("<{}> is not known", tool.name()))
                 .at(tool.place())
                 .with_help(format!("read as <{TOOL}>")),
         );
@@ -298,9 +298,12 @@ fn task_set(set: Element<'_>, warnings: &mut Warnings) -> Result<IkTaskSet, Erro
         if !task.is("IKMarkerTask") && !task.is("IKCoordinateTask") {
             if !matches!(task.name(), "objects" | "groups" | "defaults") {
                 warnings.add("setup/unknown-task", || {
-                    Diagnostic::new("setup/unknown-task", format!("<{}> is no task", task.name()))
-                        .at(task.place())
-                        .with_help("it was skipped; tasks are IKMarkerTask and IKCoordinateTask")
+                    Diagnostic::warning(
+                        "setup/unknown-task",
+                        format!("<{}> is no task", task.name()),
+                    )
+                    .at(task.place())
+                    .with_help("it was skipped; tasks are IKMarkerTask and IKCoordinateTask")
                 });
             }
             continue;
@@ -310,7 +313,7 @@ fn task_set(set: Element<'_>, warnings: &mut Warnings) -> Result<IkTaskSet, Erro
         let given = weight(task, "weight")?;
         if given.is_none() {
             warnings.add("setup/no-weight", || {
-                Diagnostic::new("setup/no-weight", format!("{} has no weight", task.describe()))
+                Diagnostic::warning("setup/no-weight", format!("{} has no weight", task.describe()))
                     .at(task.place())
                     .with_help("it is 0, as in OpenSim")
             });
@@ -323,7 +326,7 @@ fn task_set(set: Element<'_>, warnings: &mut Warnings) -> Result<IkTaskSet, Erro
         }
         if !seen.insert((task.name(), name.clone())) {
             warnings.add("setup/duplicate-task", || {
-                Diagnostic::new("setup/duplicate-task", format!("{} repeats", task.describe()))
+                Diagnostic::warning("setup/duplicate-task", format!("{} repeats", task.describe()))
                     .at(task.place())
                     .with_help("the first of them rules")
             });

@@ -1,8 +1,8 @@
 //! The lines up to `endheader`.
 
-use crate::diagnostic::{Diagnostic, Error, Place, Warnings};
 use crate::table::AngleUnit;
 use crate::text::{Line, number};
+use condyle_diagnostics::{Diagnostic, Error, Place, Warnings};
 
 /// Keys that SIMM wrote with a space instead of `=`.
 const SIMM_KEYS: [&str; 4] = ["datacolumns", "datarows", "otherdata", "range"];
@@ -59,7 +59,7 @@ pub(super) fn read<'a>(
                 "indegrees" => match truth(value) {
                     Some(unit) => key_unit = Some((unit, line.place())),
                     None => warnings.push(
-                        Diagnostic::new("sto/in-degrees", format!("`inDegrees={value}`"))
+                        Diagnostic::warning("sto/in-degrees", format!("`inDegrees={value}`"))
                             .at(line.place())
                             .with_help("write `inDegrees=yes` or `inDegrees=no`; it was skipped"),
                     ),
@@ -122,7 +122,7 @@ fn settle(
         (Some((key, place)), Some(text)) if key != text => {
             let name = |unit| if unit == AngleUnit::Degrees { "degrees" } else { "radians" };
             warnings.push(
-                Diagnostic::new(
+                Diagnostic::warning(
                     "sto/unit-contradiction",
                     format!("`inDegrees` says {}, the text says {}", name(key), name(text)),
                 )

@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 
 use super::header;
-use crate::diagnostic::{Diagnostic, Error, Place, Read, Warnings};
 use crate::table::Table;
 use crate::text::{Line, check_size, last_line, lines, number, read_decoded};
+use condyle_diagnostics::{Diagnostic, Error, Place, Read, Warnings};
 
 /// How cells are told apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,7 +82,7 @@ pub fn read(text: &str) -> Result<Read<Table>, Error> {
         && declared != (names.len() + usize::from(timed)) as f64
     {
         warnings.push(
-            Diagnostic::new(
+            Diagnostic::warning(
                 "sto/column-count",
                 format!(
                     "the header says {declared} columns, {} are named",
@@ -108,13 +108,13 @@ pub fn read(text: &str) -> Result<Read<Table>, Error> {
     }
     let Rows { widths, mut times, values, .. } = rows;
     if times.is_empty() {
-        warnings.push(Diagnostic::new("sto/no-rows", "the table has no rows"));
+        warnings.push(Diagnostic::warning("sto/no-rows", "the table has no rows"));
     }
     if let Some(declared) = header.rows
         && declared != times.len() as f64
     {
         warnings.push(
-            Diagnostic::new(
+            Diagnostic::warning(
                 "sto/row-count",
                 format!("the header says {declared} rows, {} follow", times.len()),
             )
@@ -154,7 +154,7 @@ fn distinct(names: &[&str], line: Line<'_>, warnings: &mut Warnings) -> Result<V
         let number = index + 2;
         let name = if name.is_empty() {
             warnings.add("sto/unnamed", || {
-                Diagnostic::new("sto/unnamed", format!("column {number} has no name"))
+                Diagnostic::warning("sto/unnamed", format!("column {number} has no name"))
                     .at(line.place())
                     .with_help(format!("it is called `column_{number}`"))
             });
@@ -206,9 +206,12 @@ impl Rows<'_> {
         }
         if cells.len() < expected {
             warnings.add("sto/short-row", || {
-                Diagnostic::new("sto/short-row", "the row ends early").at(line.place()).with_help(
-                    format!("expected {expected} cells, found {}; the rest is NaN", cells.len()),
-                )
+                Diagnostic::warning("sto/short-row", "the row ends early")
+                    .at(line.place())
+                    .with_help(format!(
+                        "expected {expected} cells, found {}; the rest is NaN",
+                        cells.len()
+                    ))
             });
         }
         if self.widths.is_empty() {
@@ -276,7 +279,7 @@ impl Rows<'_> {
             }
             Some(last) if time == *last => {
                 warnings.add("sto/same-time", || {
-                    Diagnostic::new("sto/same-time", format!("time {time} s is repeated"))
+                    Diagnostic::warning("sto/same-time", format!("time {time} s is repeated"))
                         .at(line.place_of(cell))
                 });
                 Ok(time)
@@ -300,7 +303,7 @@ fn spread(times: &mut [f64], start: f64, end: f64, warnings: &mut Warnings) {
         *time = start + (end - start) * (row as f64 / last);
     }
     warnings.push(
-        Diagnostic::new("sto/even-times", "there is no column `time`")
+        Diagnostic::warning("sto/even-times", "there is no column `time`")
             .with_help(format!("rows are spread evenly over the range, {start} s to {end} s")),
     );
 }
@@ -335,7 +338,7 @@ fn widen(
         }
     }
     warnings.push(
-        Diagnostic::new("sto/vector-cells", "cells hold several numbers")
+        Diagnostic::warning("sto/vector-cells", "cells hold several numbers")
             .at(place)
             .with_help("they are read as columns `name_1`, `name_2`, ..., in the file's order"),
     );

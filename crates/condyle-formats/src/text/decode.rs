@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::diagnostic::{Diagnostic, Error, Place, Read};
+use condyle_diagnostics::{Diagnostic, Error, Place, Read};
 
 /// The largest text a reader takes, in bytes (512 MiB).
 pub const MAX_TEXT_BYTES: usize = 512 << 20;
@@ -37,7 +37,7 @@ pub fn decode(bytes: &[u8]) -> Result<Read<Cow<'_, str>>, Error> {
             let wrong = error.valid_up_to();
             let line = 1 + bytes[..wrong].iter().filter(|b| **b == b'\n').count();
             let text: String = bytes.iter().map(|b| char::from(*b)).collect();
-            let warning = Diagnostic::new("text/encoding", "the text is not UTF-8")
+            let warning = Diagnostic::note("text/encoding", "the text is not UTF-8")
                 .at(Place { line, column: 0, byte: Some(wrong as u64) })
                 .with_help("read as Latin-1; letters outside ASCII may be wrong");
             Ok(Read { value: Cow::Owned(text), warnings: vec![warning] })
@@ -68,7 +68,7 @@ fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Read<Cow<'_, str>> {
     let mut read = Read::clean(Cow::Owned(text));
     if broken {
         read.warnings.push(
-            Diagnostic::new("text/encoding", "the UTF-16 text has broken characters")
+            Diagnostic::note("text/encoding", "the UTF-16 text has broken characters")
                 .with_help("they were replaced by `\u{fffd}`"),
         );
     }

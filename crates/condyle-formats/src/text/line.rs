@@ -1,6 +1,6 @@
 //! Lines that end with LF, CR LF or a lone CR.
 
-use crate::diagnostic::Place;
+use condyle_diagnostics::Place;
 
 /// One line without its end.
 #[derive(Debug, Clone, Copy)]

@@ -1,8 +1,8 @@
 //! The lines before the first row: rate, counts, unit and labels.
 
-use crate::diagnostic::{Diagnostic, Error, Place, Warnings};
 use crate::recording::LengthUnit;
 use crate::text::{Line, number};
+use condyle_diagnostics::{Diagnostic, Error, Place, Warnings};
 
 /// How cells are told apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,7 +62,7 @@ pub(super) fn read<'a>(
     let rate = number_of("DataRate").filter(|rate| *rate > 0.0);
     if rate.is_none() {
         warnings.push(
-            Diagnostic::new("trc/rate", "the header has no DataRate")
+            Diagnostic::warning("trc/rate", "the header has no DataRate")
                 .at(values_line.place())
                 .with_help("the rate is taken from the times"),
         );
@@ -85,7 +85,7 @@ fn find_keys<'a>(
     };
     if has_keys(first) {
         warnings.push(
-            Diagnostic::new("trc/path-file-type", "the line `PathFileType` is missing")
+            Diagnostic::warning("trc/path-file-type", "the line `PathFileType` is missing")
                 .at(first.place()),
         );
         return Ok(first);
@@ -100,7 +100,7 @@ fn find_keys<'a>(
         && !axes.replace(' ', "").eq_ignore_ascii_case("X/Y/Z")
     {
         warnings.push(
-            Diagnostic::new("trc/axes", format!("the axes are named `({axes})`"))
+            Diagnostic::warning("trc/axes", format!("the axes are named `({axes})`"))
                 .at(first.place())
                 .with_help("coordinates are taken in the order of the columns"),
         );
@@ -132,7 +132,7 @@ fn unit_of(name: Option<&str>, line: Line<'_>, warnings: &mut Warnings) -> Optio
             _ => "the header has no unit of length".to_owned(),
         };
         warnings.add("trc/unit", || {
-            Diagnostic::new("trc/unit", message)
+            Diagnostic::warning("trc/unit", message)
                 .at(line.place())
                 .with_help("write mm, cm, m, in or ft; guessed from the size of the data")
         });
@@ -194,7 +194,7 @@ fn labels<'a>(
         && declared != named.len() as f64
     {
         warnings.push(
-            Diagnostic::new(
+            Diagnostic::warning(
                 "trc/marker-count",
                 format!("NumMarkers says {declared}, names there are {}", named.len()),
             )
@@ -230,7 +230,7 @@ fn unnamed<'a>(
             Some(name) => *name,
             None => {
                 warnings.add("trc/unnamed", || {
-                    Diagnostic::new("trc/unnamed", format!("column {} has no name", head + 1))
+                    Diagnostic::warning("trc/unnamed", format!("column {} has no name", head + 1))
                         .at(line.place())
                         .with_help("the marker is called `unnamed`")
                 });
@@ -259,7 +259,7 @@ fn distinct(named: &[(usize, &str)], line: Line<'_>, warnings: &mut Warnings) ->
             other = format!("{name}#{count}");
         }
         warnings.add("trc/duplicate-name", || {
-            Diagnostic::new("trc/duplicate-name", format!("two markers are called `{name}`"))
+            Diagnostic::warning("trc/duplicate-name", format!("two markers are called `{name}`"))
                 .at(line.place())
                 .with_help(format!("the later one is read as `{other}`"))
         });

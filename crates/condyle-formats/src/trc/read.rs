@@ -1,9 +1,9 @@
 //! Reading: rows, units and times.
 
 use super::header::{self, Delimiter, Header};
-use crate::diagnostic::{Diagnostic, Error, Place, Read, Warnings};
 use crate::recording::{LengthUnit, Recording};
 use crate::text::{Line, check_size, last_line, lines, number, read_decoded};
+use condyle_diagnostics::{Diagnostic, Error, Place, Read, Warnings};
 
 /// Choices that a TRC file itself cannot make.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -80,7 +80,7 @@ pub fn read_with(text: &str, options: Options) -> Result<Read<Recording>, Error>
         && declared != times.len() as f64
     {
         warnings.push(
-            Diagnostic::new(
+            Diagnostic::warning(
                 "trc/frame-count",
                 format!("NumFrames says {declared}, {} rows follow", times.len()),
             )
@@ -126,7 +126,7 @@ impl Rows<'_> {
                 warnings.add("trc/nameless", || {
                     let count = nameless / 3;
                     let markers = format!("markers without a name in the rows: {count}");
-                    Diagnostic::new("trc/nameless", markers)
+                    Diagnostic::warning("trc/nameless", markers)
                         .at(line.place_of(cells[expected]))
                         .with_help("those after the last name were skipped")
                 });
@@ -153,7 +153,7 @@ impl Rows<'_> {
             let unseen = markers - cells.len().saturating_sub(2) / 3;
             if delimiter == Delimiter::Space {
                 warnings.add("trc/space-gaps", || {
-                    Diagnostic::new("trc/space-gaps", "a row without tabs has too few cells")
+                    Diagnostic::warning("trc/space-gaps", "a row without tabs has too few cells")
                         .at(line.place())
                         .with_help(
                             "which marker is missing cannot be known; the last ones are taken",
@@ -161,12 +161,12 @@ impl Rows<'_> {
                 });
             }
             warnings.add("trc/short-row", || {
-                Diagnostic::new("trc/short-row", "the row ends early").at(line.place()).with_help(
-                    format!(
+                Diagnostic::warning("trc/short-row", "the row ends early")
+                    .at(line.place())
+                    .with_help(format!(
                         "expected {expected} cells, found {}; markers missing at its end: {unseen}",
                         cells.len()
-                    ),
-                )
+                    ))
             });
         }
         self.times.push(time);
@@ -205,7 +205,7 @@ impl Rows<'_> {
             }
             Some(last) if seconds == *last => {
                 warnings.add("trc/same-time", || {
-                    Diagnostic::new("trc/same-time", format!("time {seconds} s is repeated"))
+                    Diagnostic::warning("trc/same-time", format!("time {seconds} s is repeated"))
                         .at(line.place_of(time))
                 });
                 Ok(seconds)
@@ -238,7 +238,7 @@ impl Rows<'_> {
         if blank == 1 || blank == 2 {
             warnings.add("trc/part-blank", || {
                 let label = self.header.labels.get(marker).map_or("", String::as_str);
-                Diagnostic::new("trc/part-blank", format!("`{label}` has {blank} blank cells"))
+                Diagnostic::warning("trc/part-blank", format!("`{label}` has {blank} blank cells"))
                     .at(line.place())
                     .with_help("the marker is taken as missing")
             });
@@ -272,7 +272,7 @@ fn rate(declared: Option<f64>, times: &[f64], warnings: &mut Warnings) -> f64 {
         && !(0.95..1.05).contains(&(declared / measured))
     {
         warnings.push(
-            Diagnostic::new(
+            Diagnostic::warning(
                 "trc/rate",
                 format!("DataRate says {declared} Hz, the times say {measured:.3} Hz"),
             )
@@ -298,7 +298,7 @@ fn convert(
             _ => LengthUnit::Metre,
         };
         let message = format!("the markers span {size:.4} units, taken as {}", unit.name());
-        warnings.push(Diagnostic::new("trc/unit", message).at(header));
+        warnings.push(Diagnostic::warning("trc/unit", message).at(header));
         unit
     });
     for position in recording.positions.iter_mut().flatten() {
@@ -316,7 +316,7 @@ fn convert(
     };
     if let Some(message) = suspicious {
         warnings.push(
-            Diagnostic::new("trc/size", message)
+            Diagnostic::warning("trc/size", message)
                 .at(header)
                 .with_help(format!("is the unit `{}` right?", unit.name())),
         );

@@ -1,8 +1,8 @@
 //! Writing: the plainest dialect, which every reader takes.
 
-use crate::diagnostic::Error;
 use crate::recording::Recording;
 use crate::text::{decimal, plain};
+use condyle_diagnostics::Error;
 
 /// Writes a recording in its own unit, tab-separated; a marker not seen leaves three blank cells.
 ///

@@ -1,8 +1,8 @@
 //! Elements of a document: names, children, numbers.
 
 use super::{NONE, Node, XmlDocument};
-use crate::diagnostic::{Error, Place};
 use crate::text::number;
+use condyle_diagnostics::{Error, Place};
 
 /// One element of a document; a copyable handle.
 #[derive(Debug, Clone, Copy)]

@@ -25,8 +25,8 @@ mod repair;
 
 pub use element::Element;
 
-use crate::diagnostic::{Error, Place, Read, Warnings};
 use crate::text::{check_size, decode, last_line};
+use condyle_diagnostics::{Error, Place, Read, Warnings};
 use repair::{Places, repair};
 
 /// How deep elements may be nested.

@@ -13,8 +13,8 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use super::{MAX_ATTRIBUTES, MAX_DEPTH, MAX_PREFIXES};
-use crate::diagnostic::{Diagnostic, Error, Place, Warnings};
 use crate::text::column_at;
+use condyle_diagnostics::{Diagnostic, Error, Place, Warnings};
 
 /// The text as a namespace-aware parser takes it.
 pub(super) fn repair<'a>(text: &'a str, warnings: &mut Warnings) -> Result<Cow<'a, str>, Error> {
@@ -38,7 +38,7 @@ pub(super) fn repair<'a>(text: &'a str, warnings: &mut Warnings) -> Result<Cow<'
         let place = places.at(name.start);
         warnings.add("xml/prefix", || {
             let written = text.get(name.clone()).unwrap_or_default();
-            Diagnostic::new("xml/prefix", format!("`{written}` has a prefix nobody declared"))
+            Diagnostic::note("xml/prefix", format!("`{written}` has a prefix nobody declared"))
                 .at(place)
                 .with_help(format!("read as `{}`", written.replace(':', "_")))
         });
@@ -79,7 +79,7 @@ impl Blank {
             Self::Comment => ("a comment holds `--`", "the comment was skipped"),
             Self::StrayEnd => ("a closing tag closes nothing", "it was skipped"),
         };
-        Diagnostic::new(self.code(), message).with_help(help)
+        Diagnostic::warning(self.code(), message).with_help(help)
     }
 }
 

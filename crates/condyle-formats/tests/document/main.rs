@@ -13,11 +13,11 @@ mod skeletons;
 mod wrong;
 
 use condyle_formats::document::{self, Document};
-use condyle_formats::{Diagnostic, Read};
+use condyle_formats::{Error, Read};
 use condyle_model::{Mode, Model, Pose, Program};
 
 /// Reads a text that includes nothing and knows the law of random models.
-fn try_read(text: &str) -> Result<Read<Document>, Vec<Diagnostic>> {
+fn try_read(text: &str) -> Result<Read<Document>, Error> {
     document::read_with(
         text,
         &mut |_| Err("nothing is included here".to_owned()),

@@ -1,6 +1,6 @@
 //! Making a model step by step.
 
-use super::check::{self, Finding, Severity};
+use super::check;
 use super::scaling;
 use super::{
     Closure, ComponentId, Coordinate, CoordinateId, CoordinateKind, JointSet, JointSetId, Marker,
@@ -11,6 +11,7 @@ use crate::component::{
     Product, Rotate, Source, SurfaceAxis, Translate,
 };
 use crate::limit::Range;
+use condyle_diagnostics::{Error, Read, Severity};
 use condyle_math::function::{Function, FunctionOfSeveral};
 use condyle_math::{Affine, Vec3};
 
@@ -302,21 +303,24 @@ impl ModelBuilder {
     /// Checks everything and freezes the model.
     ///
     /// # Errors
-    /// All findings, at least one of which is an error.
-    pub fn build(self) -> Result<Model, Vec<Finding>> {
-        self.build_with_findings().map(|(model, _)| model)
+    /// Everything that was found, errors first; at least one of the diagnostics is an error.
+    pub fn build(self) -> Result<Model, Error> {
+        self.build_with_warnings().map(|read| read.value)
     }
 
-    /// As [`ModelBuilder::build`], with the findings that are no errors beside the model.
+    /// As [`ModelBuilder::build`], with the warnings beside the model.
     ///
     /// # Errors
-    /// All findings, at least one of which is an error.
-    pub fn build_with_findings(mut self) -> Result<(Model, Vec<Finding>), Vec<Finding>> {
+    /// Everything that was found, errors first; at least one of the diagnostics is an error.
+    pub fn build_with_warnings(mut self) -> Result<Read<Model>, Error> {
         let mut findings = check::check(&self.model);
         findings.extend(scaling::check_groups(&self.model));
-        if findings.iter().any(|f| f.severity == Severity::Error) {
-            return Err(findings);
-        }
+        findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
+        let broken = findings.first().is_some_and(|f| f.severity == Severity::Error);
+        let warnings = match Error::of(findings) {
+            Some(error) if broken => return Err(error.contradiction()),
+            warnings => warnings.map(Error::into_diagnostics).unwrap_or_default(),
+        };
         for named in &mut self.model.components {
             match &mut named.component {
                 Component::Rotate(c) => c.axis = c.axis.normalized(),
@@ -343,6 +347,6 @@ impl ModelBuilder {
             self.model.stored_offsets.push(stored);
             self.model.tangent_offsets.push(tangent);
         }
-        Ok((self.model, findings))
+        Ok(Read { value: self.model, warnings })
     }
 }

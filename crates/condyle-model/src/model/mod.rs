@@ -12,7 +12,7 @@ mod scaling;
 mod segment;
 
 pub use builder::ModelBuilder;
-pub use check::{Finding, Severity};
+pub use check::{AXIS_LENGTH, CROSSING_RANGE, DEFAULT_OUTSIDE_RANGE};
 pub use closure::{Closure, Condition};
 pub use coordinate::{Coordinate, CoordinateKind};
 pub use scaling::SizeGroup;
@@ -23,8 +23,9 @@ pub(crate) use check::{Node, dependency_order};
 pub use crate::position::{ComponentId, CoordinateId, JointSetId, SegmentId};
 
 use crate::component::{Compensate, Component, Source};
+use condyle_diagnostics::{Error, Subject, nearest};
 use condyle_math::{Quat, Vec3};
-use std::fmt;
+use std::collections::HashMap;
 
 /// The axis of the world that points up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -305,26 +306,38 @@ impl Model {
         }
     }
 
+    /// The keys of all coordinates, as [`Model::coordinate_key`] gives them.
+    pub fn coordinate_keys(&self) -> Vec<String> {
+        let mut count: HashMap<&str, usize> = HashMap::new();
+        self.coordinates.iter().for_each(|c| *count.entry(&c.name).or_default() += 1);
+        let key = |c: &Coordinate| match count[c.name.as_str()] {
+            1 => c.name.clone(),
+            _ => format!("{}/{}", self.joint_sets[c.joint_set.index()].name, c.name),
+        };
+        self.coordinates.iter().map(key).collect()
+    }
+
+    /// A component as a subject of diagnostics.
+    pub fn component_subject(&self, named: &NamedComponent) -> Subject {
+        Subject::component(&self.joint_sets[named.joint_set.index()].name, &named.name)
+    }
+
     /// The segment of that name.
     ///
     /// # Errors
-    /// [`NameError`], with the nearest name that exists.
-    pub fn find_segment(&self, name: &str) -> Result<SegmentId, NameError> {
+    /// An error with the nearest name that exists.
+    pub fn find_segment(&self, name: &str) -> Result<SegmentId, Error> {
         match self.segments.iter().position(|s| s.name == name) {
             Some(index) => Ok(SegmentId(index as u32)),
-            None => Err(NameError::unknown(
-                "segment",
-                name,
-                self.segments.iter().map(|s| s.name.clone()).collect(),
-            )),
+            None => Err(unknown("segment", name, self.segments.iter().map(|s| s.name.clone()))),
         }
     }
 
     /// The coordinate with that key: a bare name where it is unique, or `joint/name`.
     ///
     /// # Errors
-    /// [`NameError`], with the nearest key that exists or with all that the name could mean.
-    pub fn find_coordinate(&self, key: &str) -> Result<CoordinateId, NameError> {
+    /// An error with the nearest key that exists or with all that the name could mean.
+    pub fn find_coordinate(&self, key: &str) -> Result<CoordinateId, Error> {
         let full =
             |c: &Coordinate| format!("{}/{}", self.joint_sets[c.joint_set.index()].name, c.name);
         let hits: Vec<CoordinateId> = self
@@ -333,62 +346,24 @@ impl Model {
             .collect();
         match hits[..] {
             [id] => Ok(id),
-            [] => Err(NameError::unknown(
-                "coordinate",
-                key,
-                self.coordinate_ids().map(|id| self.coordinate_key(id)).collect(),
-            )),
-            _ => Err(NameError {
-                what: "coordinate",
-                name: key.to_owned(),
-                nearest: None,
-                candidates: hits.iter().map(|&id| full(self.coordinate(id))).collect(),
-            }),
+            [] => Err(unknown("coordinate", key, self.coordinate_keys().into_iter())),
+            _ => {
+                let names: Vec<String> = hits.iter().map(|&id| full(self.coordinate(id))).collect();
+                let message = format!(
+                    "the coordinate name `{key}` is ambiguous: it could be `{}`",
+                    names.join("`, `")
+                );
+                Err(Error::new("model/ambiguous-name", message))
+            }
         }
     }
 }
 
-/// A name that is not in the model, or that means several things.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NameError {
-    /// What was looked for.
-    pub what: &'static str,
-    /// The name that was asked for.
-    pub name: String,
-    /// The most similar name that exists, if one is near.
-    pub nearest: Option<String>,
-    /// What the name could mean, where it is ambiguous.
-    pub candidates: Vec<String>,
+fn unknown(what: &str, name: &str, existing: impl Iterator<Item = String>) -> Error {
+    let existing: Vec<String> = existing.collect();
+    let help = match nearest(name, existing.iter().map(String::as_str)) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => String::new(),
+    };
+    Error::new("model/unknown-name", format!("unknown {what} `{name}`")).with_help(help)
 }
-
-impl NameError {
-    fn unknown(what: &'static str, name: &str, existing: Vec<String>) -> Self {
-        let nearest = existing
-            .into_iter()
-            .map(|candidate| (strsim::jaro_winkler(name, &candidate), candidate))
-            .filter(|(similarity, _)| *similarity > 0.75)
-            .max_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(_, candidate)| candidate);
-        Self { what, name: name.to_owned(), nearest, candidates: vec![] }
-    }
-}
-
-impl fmt::Display for NameError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if !self.candidates.is_empty() {
-            let list = self.candidates.join("`, `");
-            return write!(
-                f,
-                "the {} name `{}` is ambiguous: it could be `{list}`",
-                self.what, self.name
-            );
-        }
-        write!(f, "unknown {} `{}`", self.what, self.name)?;
-        match &self.nearest {
-            Some(nearest) => write!(f, "; did you mean `{nearest}`?"),
-            None => Ok(()),
-        }
-    }
-}
-
-impl std::error::Error for NameError {}

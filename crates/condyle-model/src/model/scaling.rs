@@ -22,9 +22,9 @@
 //! and stays. Where it is one between two bones, its default and its range grow, since a kneecap that
 //! rests 4 cm above a joint rests higher above a larger one.
 
-use super::check::Finding;
-use super::{Condition, CoordinateKind, Model, NamedComponent, SegmentId, Severity};
+use super::{Condition, CoordinateKind, Model, NamedComponent, SegmentId};
 use crate::component::{Centre, Component, ContactPair, Gliding, Pivot, Source};
+use condyle_diagnostics::{Diagnostic, Subject};
 use condyle_math::function::{
     Curve, Function, FunctionOfSeveral, MultivariatePolynomial, PiecewiseLinear, Polynomial,
     SimmSpline,
@@ -419,17 +419,17 @@ fn grow_spline(spline: &mut SimmSpline, result: f64, argument: f64) {
 }
 
 /// What is wrong with the groups of a model: names given twice, segments in two groups.
-pub(super) fn check_groups(model: &Model) -> Vec<Finding> {
+pub(super) fn check_groups(model: &Model) -> Vec<Diagnostic> {
     let mut findings = vec![];
-    let mut error = |message: String, help: &str| {
-        let (severity, code) = (Severity::Error, "model/size-group");
-        findings.push(Finding { severity, code, message, help: help.to_owned() });
+    let mut error = |group: &SizeGroup, message: String, help: &str| {
+        let error = Diagnostic::error("model/size-group", message).with_help(help);
+        findings.push(error.about(Subject::SizeGroup(group.name.clone())));
     };
     let mut group_of: Vec<Option<&str>> = vec![None; model.segments.len()];
     for (index, group) in model.size_groups.iter().enumerate() {
         if model.size_groups[..index].iter().any(|other| other.name == group.name) {
             let message = format!("two size groups are named `{}`", group.name);
-            error(message, "give each size group a name of its own");
+            error(group, message, "give each size group a name of its own");
         }
         for id in &group.segments {
             let Some(known) = group_of.get_mut(id.index()) else { continue };
@@ -439,7 +439,7 @@ pub(super) fn check_groups(model: &Model) -> Vec<Finding> {
                     "segment `{segment}` is in size group `{other}` and in `{}`",
                     group.name
                 );
-                error(message, "list each segment once, in one size group");
+                error(group, message, "list each segment once, in one size group");
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Loops that the default pose leaves open.
 
-use super::{Finding, Severity, Subject, length};
+use super::{Inspected, finding, length};
+use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_math::Vec3;
 use condyle_model::Model;
 use condyle_model::evaluate::ClosureRows;
@@ -68,16 +69,16 @@ pub(super) fn gaps(model: &Model, rows: &ClosureRows) -> Vec<Gap> {
         .collect()
 }
 
-pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     let model = subject.model;
     let mut rows = ClosureRows::new(model);
     rows.update(model, &subject.program, &subject.rest, None);
     for (closure, gap) in model.closures().iter().zip(gaps(model, &rows)) {
         if gap.is_open() {
-            findings.push(Finding::new(
+            findings.push(finding(
                 Severity::Warning,
                 "lint/open-loop",
-                [closure.name.clone()],
+                [Subject::Closure(closure.name.clone())],
                 format!("loop `{}` is open by {} in the default pose", closure.name, gap.shown()),
                 "choose defaults that close it; tracking closes it, plain poses do not",
             ));

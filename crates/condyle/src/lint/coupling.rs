@@ -1,12 +1,13 @@
 //! Coordinates that follow others, and coordinates that move nothing.
 
-use super::{Finding, Severity, Subject, real_range, tolerance};
+use super::{Inspected, finding, real_range, tolerance};
+use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_model::component::Source;
 use condyle_model::model::Condition;
 use condyle_model::{CoordinateId, CoordinateKind};
 use std::collections::HashSet;
 
-pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     for id in subject.model.coordinate_ids() {
         if let Some(source) = subject.model.coordinate(id).follows {
             findings.extend(range_left(subject, id, source));
@@ -18,7 +19,7 @@ pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
 }
 
 /// A follower that its leaders take out of its own range.
-fn range_left(subject: &Subject<'_>, id: CoordinateId, source: Source) -> Option<Finding> {
+fn range_left(subject: &Inspected<'_>, id: CoordinateId, source: Source) -> Option<Diagnostic> {
     let (lower, upper) = real_range(subject.model, id)?;
     let taken = subject.reach.taken(source)?;
     let outside = |value: f64| (lower - value).max(value - upper);
@@ -47,10 +48,10 @@ fn range_left(subject: &Subject<'_>, id: CoordinateId, source: Source) -> Option
     let enforced = subject.model.coordinate(id).range.enforced;
     let mut subjects = vec![key.clone()];
     subjects.extend(taken.leaders.iter().map(|&leader| subject.key(leader)));
-    Some(Finding::new(
+    Some(finding(
         if enforced { Severity::Warning } else { Severity::Note },
         "lint/follower-range",
-        subjects,
+        subjects.into_iter().map(Subject::Coordinate),
         format!(
             "`{key}` follows to {} at {}, {} past its limit {}{from}",
             subject.shown(id, *worst),
@@ -70,7 +71,7 @@ fn first_outside(samples: &[(Vec<f64>, f64)], out: impl Fn(f64) -> bool) -> Opti
 }
 
 /// A default that is not what the leaders make at theirs: it is never seen.
-fn default_ignored(subject: &Subject<'_>, id: CoordinateId) -> Option<Finding> {
+fn default_ignored(subject: &Inspected<'_>, id: CoordinateId) -> Option<Diagnostic> {
     let coordinate = subject.model.coordinate(id);
     let (stated, made) = (coordinate.default[0], subject.rest.coordinate(subject.model, id)[0]);
     let visible = match coordinate.kind {
@@ -81,10 +82,10 @@ fn default_ignored(subject: &Subject<'_>, id: CoordinateId) -> Option<Finding> {
         return None;
     }
     let key = subject.key(id);
-    Some(Finding::new(
+    Some(finding(
         Severity::Note,
         "lint/follower-default",
-        [key.clone()],
+        [Subject::Coordinate(key.clone())],
         format!(
             "the default of `{key}`, {}, is never taken: its leaders make it {} at their defaults",
             subject.shown(id, stated),
@@ -98,7 +99,7 @@ fn default_ignored(subject: &Subject<'_>, id: CoordinateId) -> Option<Finding> {
 const LONGEST_NAMED: usize = 8;
 
 /// A follower of a follower.
-fn chain(subject: &Subject<'_>, id: CoordinateId, source: Source) -> Option<Finding> {
+fn chain(subject: &Inspected<'_>, id: CoordinateId, source: Source) -> Option<Diagnostic> {
     let mut path = vec![id];
     let mut seen = HashSet::new();
     let mut open = vec![source];
@@ -121,17 +122,17 @@ fn chain(subject: &Subject<'_>, id: CoordinateId, source: Source) -> Option<Find
         return None;
     }
     let names: Vec<String> = path.iter().map(|&id| subject.key(id)).collect();
-    Some(Finding::new(
+    Some(finding(
         Severity::Note,
         "lint/coupling-chain",
-        names.clone(),
+        names.iter().cloned().map(Subject::Coordinate),
         format!("`{}`", names.join("` follows `")),
         "other programs solve such chains less exactly; couple to the first leader if that is meant",
     ))
 }
 
 /// Free coordinates that move no segment.
-fn idle(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+fn idle(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     let model = subject.model;
     let mut moves = vec![false; model.tangent_len()];
     for segment in model.segment_ids() {
@@ -157,10 +158,10 @@ fn idle(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
             follows.is_some_and(|source| subject.reach.leaders(source).contains(&id))
         });
         let also = if leads { ", and neither do those that follow it" } else { "" };
-        findings.push(Finding::new(
+        findings.push(finding(
             Severity::Warning,
             "lint/moves-nothing",
-            [key.clone()],
+            [Subject::Coordinate(key.clone())],
             format!("`{key}` moves no segment{also}"),
             "let an axis of its joint use it, or take it out",
         ));

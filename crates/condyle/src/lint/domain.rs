@@ -3,7 +3,8 @@
 //! Beyond its last knot a spline goes on straight, which is nobody's measurement: the range of the
 //! coordinate that drives it promises more than the function knows.
 
-use super::{Finding, Severity, Subject, amount};
+use super::{Inspected, amount, finding};
+use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_math::function::Function;
 use condyle_model::component::{Component, Source};
 use condyle_model::{CoordinateId, CoordinateKind};
@@ -29,7 +30,7 @@ struct Beyond {
 }
 
 /// One finding for each coordinate and side of its range, with all functions that are too short.
-pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     let mut found: BTreeMap<(CoordinateId, bool), Vec<Beyond>> = BTreeMap::new();
     for (index, named) in subject.model.components().iter().enumerate() {
         let Component::Map(map) = &named.component else { continue };
@@ -69,7 +70,7 @@ pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
 }
 
 /// What an output is used as: an angle, a distance, the value of a coordinate, or something else.
-fn made(subject: &Subject<'_>, component: usize, output: usize) -> CoordinateKind {
+fn made(subject: &Inspected<'_>, component: usize, output: usize) -> CoordinateKind {
     let is_it = |source: Source| matches!(source, Source::Output(id, n) if (id.index(), n as usize) == (component, output));
     for named in subject.model.components() {
         match &named.component {
@@ -84,7 +85,7 @@ fn made(subject: &Subject<'_>, component: usize, output: usize) -> CoordinateKin
 }
 
 /// A function by what it makes: a coordinate that follows it, or its component.
-fn name_of(subject: &Subject<'_>, component: usize, set: &str) -> String {
+fn name_of(subject: &Inspected<'_>, component: usize, set: &str) -> String {
     let follower = subject.model.coordinate_ids().find(|&id| {
         matches!(subject.model.coordinate(id).follows, Some(Source::Output(made, _))
             if made.index() == component)
@@ -102,7 +103,7 @@ fn is_flat(function: &Function) -> bool {
     (0..=16).all(|i| slope(first + (last - first) * f64::from(i) / 16.0) < 1e-12)
 }
 
-fn say(subject: &Subject<'_>, leader: CoordinateId, list: &[Beyond]) -> Finding {
+fn say(subject: &Inspected<'_>, leader: CoordinateId, list: &[Beyond]) -> Diagnostic {
     let key = subject.key(leader);
     let kind = subject.kind(leader);
     let worst = list
@@ -134,10 +135,10 @@ fn say(subject: &Subject<'_>, leader: CoordinateId, list: &[Beyond]) -> Finding 
     let enforced = subject.model.coordinate(leader).range.enforced;
     let mut subjects = vec![key.clone()];
     subjects.extend(names.iter().cloned());
-    Finding::new(
+    finding(
         if enforced { Severity::Warning } else { Severity::Note },
         "lint/beyond-knots",
-        subjects,
+        subjects.into_iter().map(Subject::Coordinate),
         format!(
             "`{key}` may reach {}{argument}, but {functions} that it drives end{} at {}: the last {} \
              {} extrapolated, by up to {}",

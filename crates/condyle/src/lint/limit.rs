@@ -1,6 +1,7 @@
 //! Limits of ball joints, and bones that should touch.
 
-use super::{Finding, Severity, Subject, amount, length, real_range};
+use super::{Inspected, amount, finding, length, real_range};
+use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_model::CoordinateKind;
 use condyle_model::component::{Component, JointCone, Source, Swinging};
 
@@ -14,7 +15,7 @@ const STEPS: usize = 13;
 const TOUCHING: f64 = 1e-5;
 
 /// Cones whose projection may jump inside the declared ranges, contacts that do not touch at rest.
-pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     for named in subject.model.components() {
         if let Component::Cone(cone) = &named.component {
             findings.extend(jump(subject, &named.name, cone));
@@ -25,12 +26,14 @@ pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
         let gap =
             report.gaps.into_iter().fold(0.0f64, |a, b| if b.abs() > a.abs() { b } else { a });
         if gap.abs() > TOUCHING {
-            let name = &subject.model.components()[id.index()].name;
+            let model = subject.model;
+            let named = &model.components()[id.index()];
+            let name = &named.name;
             let side = if gap > 0.0 { "off" } else { "inside" };
-            findings.push(Finding::new(
+            findings.push(finding(
                 Severity::Warning,
                 "lint/no-contact",
-                [name.clone()],
+                [model.component_subject(named)],
                 format!(
                     "contact `{name}` stays {} {side} its ellipsoid at rest",
                     length(gap.abs())
@@ -42,7 +45,7 @@ pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
 }
 
 /// The posture inside the declared ranges that is nearest to a jump of the projection.
-fn jump(subject: &Subject<'_>, name: &str, cone: &JointCone) -> Option<Finding> {
+fn jump(subject: &Inspected<'_>, name: &str, cone: &JointCone) -> Option<Diagnostic> {
     let sources: &[Source] = match &cone.of {
         Swinging::Angles(sources, _) => sources,
         Swinging::Directions(sources, _) => sources,
@@ -73,10 +76,10 @@ fn jump(subject: &Subject<'_>, name: &str, cone: &JointCone) -> Option<Finding> 
     let at = ranges.iter().zip(&worst.1).map(|((id, _), value)| {
         format!("`{}` {}", subject.key(*id), amount(CoordinateKind::Rotation, *value))
     });
-    Some(Finding::new(
+    Some(finding(
         Severity::Warning,
         "lint/cone-jump",
-        ranges.iter().map(|(id, _)| subject.key(*id)),
+        ranges.iter().map(|(id, _)| Subject::Coordinate(subject.key(*id))),
         format!(
             "what cone `{name}` makes of illegal angles jumps inside the declared ranges, near {}",
             at.collect::<Vec<_>>().join(", ")

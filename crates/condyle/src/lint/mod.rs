@@ -1,7 +1,7 @@
 //! What is odd in a model, or in a motion of it, although it can be read and posed.
 //!
 //! A family of rules, one file for each subject. Every rule looks at a model and answers with
-//! [`Finding`]s; it changes nothing and never fails. Rules speak of what a file says against itself:
+//! [`Diagnostic`]s; it changes nothing and never fails. Rules speak of what a file says against itself:
 //! a range against the knots of a spline, a left side against a right one, a default against its
 //! range. None of them knows what a human body can do, for that is what limits with a source are
 //! for.
@@ -37,98 +37,29 @@ mod reach;
 mod rotation;
 mod symmetry;
 
-use condyle_formats::Diagnostic;
+use condyle_diagnostics::{Diagnostic, Severity, Subject, listed};
+use condyle_formats::opensim::model::DEGREES;
+use condyle_model::model::{CROSSING_RANGE, DEFAULT_OUTSIDE_RANGE};
 use condyle_model::{CoordinateId, CoordinateKind, Mode, Model, Pose, Program};
 use reach::Reach;
 
-/// How bad a finding is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Severity {
-    /// Worth knowing.
-    Note,
-    /// Unlikely to be meant.
-    Warning,
-    /// Contradicts itself, or breaks a limit that is enforced.
-    Error,
+/// Codes of readers whose findings a rule of this family repeats, with names and numbers.
+const REPEATED: [&str; 3] = [CROSSING_RANGE, DEFAULT_OUTSIDE_RANGE, DEGREES];
+
+fn finding(
+    severity: Severity,
+    code: &'static str,
+    subjects: impl IntoIterator<Item = Subject>,
+    message: impl Into<String>,
+    help: impl Into<String>,
+) -> Diagnostic {
+    Diagnostic::new(severity, code, message).about_all(subjects).with_help(help)
 }
 
-impl Severity {
-    /// The word for it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Note => "note",
-            Self::Warning => "warning",
-            Self::Error => "error",
-        }
-    }
+/// Whether a finding makes a check fail: all but notes do.
+pub fn counts(finding: &Diagnostic) -> bool {
+    finding.severity > Severity::Note
 }
-
-/// One thing that a rule found.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Finding {
-    /// How bad it is.
-    pub severity: Severity,
-    /// A stable key, `family/rule`, for programs.
-    pub code: &'static str,
-    /// One sentence for people, with names and numbers in degrees and millimetres.
-    pub message: String,
-    /// The names of what it is about: coordinates by key, segments, markers, loops.
-    pub subjects: Vec<String>,
-    /// What would be right.
-    pub help: String,
-}
-
-impl Finding {
-    fn new(
-        severity: Severity,
-        code: &'static str,
-        subjects: impl IntoIterator<Item = String>,
-        message: impl Into<String>,
-        help: impl Into<String>,
-    ) -> Self {
-        Self {
-            severity,
-            code,
-            message: message.into(),
-            subjects: subjects.into_iter().collect(),
-            help: help.into(),
-        }
-    }
-
-    /// Whether it makes a check fail: all but notes do.
-    pub fn counts(&self) -> bool {
-        self.severity > Severity::Note
-    }
-}
-
-/// What a reader wondered about; its place in the file becomes part of the message.
-impl From<&Diagnostic> for Finding {
-    fn from(said: &Diagnostic) -> Self {
-        let place = said.place.map_or(String::new(), |place| format!("{place}: "));
-        let message = format!("{place}{}", said.message);
-        let mended = MENDED.contains(&said.code);
-        let severity = if mended { Severity::Note } else { Severity::Warning };
-        Self::new(severity, said.code, [], message, said.help.clone().unwrap_or_default())
-    }
-}
-
-/// What a builder found in a model made in Rust.
-impl From<&condyle_model::Finding> for Finding {
-    fn from(found: &condyle_model::Finding) -> Self {
-        let severity = match found.severity {
-            condyle_model::Severity::Error => Severity::Error,
-            condyle_model::Severity::Warning => Severity::Warning,
-        };
-        Self::new(severity, found.code, [], &found.message, &found.help)
-    }
-}
-
-/// Slips of spelling that a reader mends without a guess: official files have them.
-const MENDED: [&str; 2] = ["text/encoding", "xml/prefix"];
-
-/// Said again, with names and numbers, by a rule of this family.
-const SAID_BETTER: [&str; 3] =
-    ["model/crossing-range", "model/default-outside-range", "osim/degrees"];
 
 /// All findings about a model, and what its reader wondered about; the worst first.
 ///
@@ -141,13 +72,10 @@ const SAID_BETTER: [&str; 3] =
 /// let findings = lint::check(&b.build().unwrap(), &[]);
 /// assert_eq!(findings[0].code, "lint/degrees");
 /// ```
-pub fn check(model: &Model, warnings: &[Diagnostic]) -> Vec<Finding> {
-    let mut findings: Vec<Finding> = warnings
-        .iter()
-        .filter(|said| !SAID_BETTER.contains(&said.code))
-        .map(Finding::from)
-        .collect();
-    let subject = Subject::new(model);
+pub fn check(model: &Model, warnings: &[Diagnostic]) -> Vec<Diagnostic> {
+    let mut findings: Vec<Diagnostic> =
+        warnings.iter().filter(|said| !REPEATED.contains(&said.code)).cloned().collect();
+    let subject = Inspected::new(model);
     range::check(&subject, &mut findings);
     domain::check(&subject, &mut findings);
     coupling::check(&subject, &mut findings);
@@ -158,7 +86,7 @@ pub fn check(model: &Model, warnings: &[Diagnostic]) -> Vec<Finding> {
     names::check(&subject, &mut findings);
     symmetry::check(&subject, &mut findings);
     if !subject.reach.finished() {
-        findings.push(Finding::new(
+        findings.push(finding(
             Severity::Note,
             "lint/unfinished",
             [],
@@ -171,7 +99,7 @@ pub fn check(model: &Model, warnings: &[Diagnostic]) -> Vec<Finding> {
 }
 
 /// A model with what most rules ask of it.
-struct Subject<'m> {
+struct Inspected<'m> {
     model: &'m Model,
     program: Program,
     /// The pose of the defaults, limits not applied.
@@ -181,13 +109,13 @@ struct Subject<'m> {
     reach: Reach<'m>,
 }
 
-impl<'m> Subject<'m> {
+impl<'m> Inspected<'m> {
     fn new(model: &'m Model) -> Self {
         let program = Program::compile(model);
         let mut rest = Pose::new(&program);
         // Both buffers are made for this program.
         let _ = program.evaluate(&model.defaults(), Mode::Open, &mut rest);
-        let keys = model.coordinate_ids().map(|id| model.coordinate_key(id)).collect();
+        let keys = model.coordinate_keys();
         Self { model, program, rest, keys, reach: Reach::new(model) }
     }
 
@@ -255,13 +183,4 @@ fn rounded(value: f64, decimals: usize) -> String {
         false => &text,
     };
     if trimmed == "-0" { "0".to_owned() } else { trimmed.to_owned() }
-}
-
-/// Names one after another, at most six of them.
-fn listed(names: &[String]) -> String {
-    let shown: Vec<String> = names.iter().take(6).map(|n| format!("`{n}`")).collect();
-    match names.len() - shown.len() {
-        0 => shown.join(", "),
-        more => format!("{} and {more} more", shown.join(", ")),
-    }
 }

@@ -5,8 +5,9 @@
 //! without a column, are not judged.
 
 use super::closure::{Gap, gaps};
-use super::{Finding, Severity, amount, length, listed, real_range, rounded, tolerance};
+use super::{amount, finding, length, listed, real_range, rounded, tolerance};
 use crate::motion::{Motion, cells};
+use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_formats::{AngleUnit, Table, coordinate_name};
 use condyle_math::Quat;
 use condyle_model::component::Source;
@@ -128,7 +129,7 @@ pub struct MotionCheck {
     /// Cells of coordinates that hold no number.
     pub blank: usize,
     /// All of it in sentences.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<Diagnostic>,
 }
 
 /// Where a limit comes from, in words.
@@ -391,10 +392,10 @@ impl MotionCheck {
         let frames = |n: usize| if n == 1 { "1 frame".to_owned() } else { format!("{n} frames") };
         for outside in &self.outside {
             let (id, worst) = (outside.coordinate, outside.worst);
-            findings.push(Finding::new(
+            findings.push(finding(
                 if outside.enforced { Severity::Error } else { Severity::Warning },
                 "motion/outside-range",
-                [key(id)],
+                [Subject::Coordinate(key(id))],
                 format!(
                     "`{}` is outside its range in {}; most in frame {} ({} s): {}, {} beyond {}",
                     key(id),
@@ -413,10 +414,10 @@ impl MotionCheck {
             ));
         }
         for d in &self.disagreements {
-            findings.push(Finding::new(
+            findings.push(finding(
                 Severity::Warning,
                 "motion/coupled",
-                [key(d.coordinate)],
+                [Subject::Coordinate(key(d.coordinate))],
                 format!(
                     "`{}` is not what its leaders make it in {}; most in frame {} ({} s): {} instead \
                      of {}",
@@ -431,10 +432,10 @@ impl MotionCheck {
             ));
         }
         for open in &self.open_loops {
-            findings.push(Finding::new(
+            findings.push(finding(
                 Severity::Warning,
                 "motion/open-loop",
-                [open.name.clone()],
+                [Subject::Closure(open.name.clone())],
                 format!(
                     "loop `{}` is open in {}; most in frame {} ({} s), by {}",
                     open.name,
@@ -451,19 +452,20 @@ impl MotionCheck {
             let names: Vec<String> = self.missing.iter().map(|&id| key(id)).collect();
             let message = format!("no column for {}", listed(&names));
             let help = "these coordinates keep their defaults";
-            findings.push(Finding::new(Severity::Warning, "motion/missing", names, message, help));
+            let names = names.into_iter().map(Subject::Coordinate);
+            findings.push(finding(Severity::Warning, "motion/missing", names, message, help));
         }
         if !self.unknown.is_empty() {
-            findings.push(Finding::new(
+            findings.push(finding(
                 Severity::Warning,
                 "motion/unknown",
-                self.unknown.iter().cloned(),
+                self.unknown.iter().cloned().map(Subject::Column),
                 format!("the model has no coordinate for {}", listed(&self.unknown)),
                 "these columns are ignored: does the motion belong to this model?",
             ));
         }
         if self.blank > 0 {
-            findings.push(Finding::new(
+            findings.push(finding(
                 Severity::Warning,
                 "motion/blank",
                 [],
@@ -473,7 +475,7 @@ impl MotionCheck {
         }
         let far = farthest_angle(model, motion);
         if table.angle_unit != AngleUnit::Degrees && far > 4.0 * PI {
-            findings.push(Finding::new(
+            findings.push(finding(
                 Severity::Warning,
                 "motion/units",
                 [],
@@ -487,7 +489,7 @@ impl MotionCheck {
         self.findings = findings;
     }
 
-    fn say_jumps(&self, model: &Model, findings: &mut Vec<Finding>) {
+    fn say_jumps(&self, model: &Model, findings: &mut Vec<Diagnostic>) {
         for id in model.coordinate_ids() {
             for wrap in [false, true] {
                 let own = || self.jumps.iter().filter(|j| j.coordinate == id && j.wrap == wrap);
@@ -500,10 +502,10 @@ impl MotionCheck {
                     true => ("wraps around", "add or take 360° to make it continuous"),
                     false => ("jumps", "no body turns by 60° in one frame: was a frame lost?"),
                 };
-                findings.push(Finding::new(
+                findings.push(finding(
                     Severity::Warning,
                     if wrap { "motion/wrap" } else { "motion/jump" },
-                    [key.clone()],
+                    [Subject::Coordinate(key.clone())],
                     format!(
                         "`{key}` {what} {times}; most at frame {} ({} s), by {}°",
                         worst.frame,
@@ -518,7 +520,7 @@ impl MotionCheck {
 
     /// Whether anything counts against the motion.
     pub fn holds(&self) -> bool {
-        !self.findings.iter().any(Finding::counts)
+        !self.findings.iter().any(super::counts)
     }
 }
 

@@ -1,25 +1,31 @@
 //! Names that people, and programs that ignore case, take for each other.
 
-use super::{Finding, Severity, Subject};
+use super::{Inspected, finding};
+use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use std::collections::BTreeMap;
 
-pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     let model = subject.model;
     let set = |index: usize| &model.joint_sets()[index].name;
-    let families: [(&str, Vec<String>); 4] = [
-        ("segments", model.segments().iter().map(|s| s.name.clone()).collect()),
-        ("joint sets", model.joint_sets().iter().map(|s| s.name.clone()).collect()),
+    let families: [(&str, fn(String) -> Subject, Vec<String>); 4] = [
+        ("segments", Subject::Segment, model.segments().iter().map(|s| s.name.clone()).collect()),
+        (
+            "joint sets",
+            Subject::JointSet,
+            model.joint_sets().iter().map(|s| s.name.clone()).collect(),
+        ),
         (
             "coordinates",
+            Subject::Coordinate,
             model
                 .coordinates()
                 .iter()
                 .map(|c| format!("{}/{}", set(c.joint_set.index()), c.name))
                 .collect(),
         ),
-        ("markers", model.markers().iter().map(|m| m.name.clone()).collect()),
+        ("markers", Subject::Marker, model.markers().iter().map(|m| m.name.clone()).collect()),
     ];
-    for (what, names) in families {
+    for (what, of, names) in families {
         let mut alike: BTreeMap<String, Vec<String>> = BTreeMap::new();
         for name in names {
             let plain: String = name.chars().filter(|c| !c.is_whitespace()).collect();
@@ -35,10 +41,10 @@ pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
             if what == "markers" && one_place(&names) {
                 continue;
             }
-            findings.push(Finding::new(
+            findings.push(finding(
                 Severity::Warning,
                 "lint/alike-names",
-                names.iter().cloned(),
+                names.iter().cloned().map(of),
                 format!("the {what} {} differ by case or spaces only", super::listed(&names)),
                 "give them names that differ: labels are matched ignoring case",
             ));

@@ -1,6 +1,7 @@
 //! Where joints and markers stand.
 
-use super::{Finding, Severity, Subject, length};
+use super::{Inspected, finding, length};
+use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_model::SegmentId;
 use std::collections::HashMap;
 
@@ -10,13 +11,13 @@ const FARTHEST_JOINT: f64 = 10.0;
 /// Markers farther than this from their segment's origin are on no body.
 const FARTHEST_MARKER: f64 = 1.0;
 
-pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     joints(subject, findings);
     markers(subject, findings);
     twins(subject, findings);
 }
 
-fn joints(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+fn joints(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     for segment in subject.model.segments() {
         let places =
             [(segment.joint_in_parent, segment.parent.is_some()), (segment.joint_in_segment, true)];
@@ -25,17 +26,17 @@ fn joints(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
         if far <= FARTHEST_JOINT {
             continue;
         }
-        findings.push(Finding::new(
+        findings.push(finding(
             Severity::Warning,
             "lint/millimetres",
-            [segment.name.clone()],
+            [Subject::Segment(segment.name.clone())],
             format!("the joint of `{}` lies {} from an origin", segment.name, length(far)),
             "lengths of a model are in metres: were these millimetres?",
         ));
     }
 }
 
-fn markers(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+fn markers(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     for marker in subject.model.markers() {
         let Some(segment) = marker.segment else { continue };
         let far = marker.point.norm();
@@ -43,10 +44,10 @@ fn markers(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
             continue;
         }
         let segment = &subject.model.segment(segment).name;
-        findings.push(Finding::new(
+        findings.push(finding(
             Severity::Warning,
             "lint/far-marker",
-            [marker.name.clone(), segment.clone()],
+            [Subject::Marker(marker.name.clone()), Subject::Segment(segment.clone())],
             format!("marker `{}` lies {} from the origin of `{segment}`", marker.name, length(far)),
             "is it on another segment, or in millimetres?",
         ));
@@ -54,7 +55,7 @@ fn markers(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
 }
 
 /// Markers of one segment in one place.
-fn twins(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+fn twins(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     type Spot = (Option<SegmentId>, [i64; 3]);
     let mut at: HashMap<Spot, Vec<&str>> = HashMap::new();
     let mut order = vec![];
@@ -73,10 +74,10 @@ fn twins(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
             continue;
         }
         let segment = spot.0.map_or("the world", |id| &subject.model.segment(id).name);
-        findings.push(Finding::new(
+        findings.push(finding(
             Severity::Note,
             "lint/marker-twins",
-            names.iter().cloned(),
+            names.iter().cloned().map(Subject::Marker),
             format!("markers {} of `{segment}` are in one place", super::listed(&names)),
             "give each its own place, or keep one",
         ));

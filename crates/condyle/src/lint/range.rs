@@ -1,11 +1,12 @@
 //! Limits and defaults of single coordinates.
 
-use super::{Finding, NO_LIMIT, Severity, Subject, tolerance};
+use super::{Inspected, NO_LIMIT, finding, tolerance};
+use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_model::{CoordinateId, CoordinateKind};
 use std::f64::consts::PI;
 
 /// Limits that cross, limits that are none, limits in degrees, defaults outside.
-pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     for id in subject.model.coordinate_ids() {
         if subject.kind(id) == CoordinateKind::Orientation {
             continue;
@@ -26,12 +27,12 @@ pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
     }
 }
 
-fn crossing(subject: &Subject<'_>, id: CoordinateId, lower: f64, upper: f64) -> Finding {
+fn crossing(subject: &Inspected<'_>, id: CoordinateId, lower: f64, upper: f64) -> Diagnostic {
     let (key, lower, upper) = (subject.key(id), subject.shown(id, lower), subject.shown(id, upper));
-    Finding::new(
+    finding(
         Severity::Error,
         "lint/crossing-range",
-        [key.clone()],
+        [Subject::Coordinate(key.clone())],
         format!("`{key}` has its lower limit {lower} above its upper limit {upper}"),
         "exchange the two",
     )
@@ -44,7 +45,7 @@ fn degrees(limits: &[f64]) -> bool {
     most > 2.0 * PI * 1.001 && most <= 360.0 && limits.iter().all(whole)
 }
 
-fn size(subject: &Subject<'_>, id: CoordinateId) -> Option<Finding> {
+fn size(subject: &Inspected<'_>, id: CoordinateId) -> Option<Diagnostic> {
     let coordinate = subject.model.coordinate(id);
     let limits: Vec<f64> =
         [coordinate.range.lower, coordinate.range.upper].into_iter().flatten().collect();
@@ -56,10 +57,10 @@ fn size(subject: &Subject<'_>, id: CoordinateId) -> Option<Finding> {
         _ => return None,
     };
     if rotation && degrees(&limits) {
-        return Some(Finding::new(
+        return Some(finding(
             Severity::Warning,
             "lint/degrees",
-            [key.clone()],
+            [Subject::Coordinate(key.clone())],
             format!("the range of `{key}`, {text} radians, looks like degrees"),
             "angles of a model are in radians: divide by 57.29578",
         ));
@@ -76,10 +77,10 @@ fn size(subject: &Subject<'_>, id: CoordinateId) -> Option<Finding> {
     };
     let follows = coordinate.follows.is_some();
     let harmless = follows || !coordinate.range.enforced;
-    Some(Finding::new(
+    Some(finding(
         if harmless { Severity::Note } else { Severity::Warning },
         "lint/dummy-range",
-        [key.clone()],
+        [Subject::Coordinate(key.clone())],
         format!("the range of `{key}`, {text}{unit}, limits nothing"),
         match (follows, harmless) {
             (true, _) => "a coordinate that follows needs no range; leave it out",
@@ -90,7 +91,7 @@ fn size(subject: &Subject<'_>, id: CoordinateId) -> Option<Finding> {
 }
 
 /// A default that its own range forbids, of a coordinate that may be chosen.
-fn default(subject: &Subject<'_>, id: CoordinateId) -> Option<Finding> {
+fn default(subject: &Inspected<'_>, id: CoordinateId) -> Option<Diagnostic> {
     let coordinate = subject.model.coordinate(id);
     let value = coordinate.default[0];
     let range = coordinate.range;
@@ -103,10 +104,10 @@ fn default(subject: &Subject<'_>, id: CoordinateId) -> Option<Finding> {
     }
     let key = subject.key(id);
     let side = if value < lower { "below" } else { "above" };
-    Some(Finding::new(
+    Some(finding(
         if range.enforced { Severity::Warning } else { Severity::Note },
         "lint/default-outside-range",
-        [key.clone()],
+        [Subject::Coordinate(key.clone())],
         format!(
             "the default of `{key}`, {}, lies {} {side} its {}range, which ends at {}",
             subject.shown(id, value),

@@ -1,6 +1,7 @@
 //! Axes of one joint that coincide: a direction in which it cannot turn.
 
-use super::{Finding, Severity, Subject};
+use super::{Inspected, finding};
+use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_math::{Mat3, Vec3};
 use condyle_model::component::{Component, Source};
 use std::f64::consts::PI;
@@ -17,7 +18,7 @@ struct Turn {
     axis: Vec3,
 }
 
-pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     for named in subject.model.components() {
         let Component::Product(product) = &named.component else { continue };
         let set = &subject.model.joint_sets()[named.joint_set.index()].name;
@@ -32,7 +33,7 @@ pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
 }
 
 /// The turns of a product that vary; fixed frames between them turn the axes after them.
-fn turns(subject: &Subject<'_>, factors: &[Source]) -> Vec<Turn> {
+fn turns(subject: &Inspected<'_>, factors: &[Source]) -> Vec<Turn> {
     let mut frame = Mat3::IDENTITY;
     let mut turns = vec![];
     for factor in factors {
@@ -62,7 +63,7 @@ fn between(a: Vec3, b: Vec3) -> f64 {
     a.cross(b).norm().atan2(a.dot(b).abs()).to_degrees()
 }
 
-fn names(subject: &Subject<'_>, turns: &[&Turn]) -> Vec<String> {
+fn names(subject: &Inspected<'_>, turns: &[&Turn]) -> Vec<String> {
     let mut names: Vec<String> = vec![];
     for turn in turns {
         for &leader in subject.reach.leaders(turn.angle) {
@@ -75,7 +76,7 @@ fn names(subject: &Subject<'_>, turns: &[&Turn]) -> Vec<String> {
     names
 }
 
-fn parallel(subject: &Subject<'_>, set: &str, a: &Turn, b: &Turn) -> Option<Finding> {
+fn parallel(subject: &Inspected<'_>, set: &str, a: &Turn, b: &Turn) -> Option<Diagnostic> {
     let angle = between(a.axis, b.axis);
     // One coordinate that turns twice, or a follower with its leader, loses nothing.
     let own = |turn: &Turn| subject.reach.leaders(turn.angle);
@@ -84,10 +85,10 @@ fn parallel(subject: &Subject<'_>, set: &str, a: &Turn, b: &Turn) -> Option<Find
         return None;
     }
     let names = names(subject, &[a, b]);
-    Some(Finding::new(
+    Some(finding(
         Severity::Warning,
         "lint/parallel-axes",
-        names.iter().cloned(),
+        names.iter().cloned().map(Subject::Coordinate),
         format!(
             "two axes of joint `{set}` ({}) lie {}° apart: they do nearly the same",
             super::listed(&names),
@@ -98,7 +99,7 @@ fn parallel(subject: &Subject<'_>, set: &str, a: &Turn, b: &Turn) -> Option<Find
 }
 
 /// Three turns whose outer axes come to lie on each other inside the range of the middle one.
-fn singular(subject: &Subject<'_>, set: &str, triple: &[Turn]) -> Option<Finding> {
+fn singular(subject: &Inspected<'_>, set: &str, triple: &[Turn]) -> Option<Diagnostic> {
     let [a, m, c] = triple else { return None };
     let right = |a: Vec3, b: Vec3| (90.0 - between(a, b)).abs() < NEARLY_RIGHT;
     if !right(a.axis, m.axis) || !right(m.axis, c.axis) {
@@ -128,10 +129,10 @@ fn singular(subject: &Subject<'_>, set: &str, triple: &[Turn]) -> Option<Finding
     };
     let names = names(subject, &[a, m, c]);
     let middle = super::listed(&self::names(subject, &[m]));
-    Some(Finding::new(
+    Some(finding(
         Severity::Note,
         "lint/singular-triple",
-        names,
+        names.into_iter().map(Subject::Coordinate),
         format!(
             "the three rotations of joint `{set}` lose a direction where {middle} makes {shown}°, \
              which lies inside its range"

@@ -6,7 +6,8 @@
 //! axes. A mirrored axis of rotation is turned over as well, so that an equal angle is an equal
 //! posture; a coordinate whose axis is not turned over counts backwards, and so should its range.
 
-use super::{Finding, Severity, Subject, length, real_range};
+use super::{Inspected, finding, length, real_range};
+use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_math::Vec3;
 use condyle_model::{CoordinateId, CoordinateKind, Jacobian, Model, Pose, SegmentId};
 use std::collections::HashMap;
@@ -20,7 +21,7 @@ const RANGES_DIFFER: f64 = 2e-3;
 /// Axes are copied from side to side, not measured.
 const AXES_DIFFER: f64 = 1.0;
 
-pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
+pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     let model = subject.model;
     let names: Vec<&str> = model.segments().iter().map(|s| s.name.as_str()).collect();
     let ids: Vec<SegmentId> = model.segment_ids().collect();
@@ -32,9 +33,9 @@ pub(super) fn check(subject: &Subject<'_>, findings: &mut Vec<Finding>) {
         .filter(|&pair| alike_parents(model, pair))
         .collect();
     let (coordinates, alone_too) = coordinate_pairs(model);
-    missing(pairs.len(), &alone, "segment", findings);
+    missing(pairs.len(), &alone, ("segment", Subject::Segment), findings);
     let keys: Vec<&str> = alone_too.iter().map(|id| subject.keys[id.index()].as_str()).collect();
-    missing(coordinates.len(), &keys, "coordinate", findings);
+    missing(coordinates.len(), &keys, ("coordinate", Subject::Coordinate), findings);
     let motions = Motions::new(subject);
     let senses = match motions.plane(&segments) {
         Some(plane) => {
@@ -138,16 +139,21 @@ fn alike_parents(model: &Model, pair: [SegmentId; 2]) -> bool {
 }
 
 /// Names without their other side, in a model that otherwise has both.
-fn missing(pairs: usize, alone: &[&str], what: &str, findings: &mut Vec<Finding>) {
+fn missing(
+    pairs: usize,
+    alone: &[&str],
+    (what, subject): (&str, fn(String) -> Subject),
+    findings: &mut Vec<Diagnostic>,
+) {
     if alone.is_empty() || pairs < 3 * alone.len() {
         return;
     }
     let names: Vec<String> = alone.iter().map(|&name| name.to_owned()).collect();
     let (s, has) = if names.len() == 1 { ("", "has") } else { ("s", "have") };
-    findings.push(Finding::new(
+    findings.push(finding(
         Severity::Note,
         "lint/side-missing",
-        names.iter().cloned(),
+        names.iter().cloned().map(subject),
         format!("{what}{s} {} {has} no other side, as {pairs} others have", super::listed(&names)),
         "is a name misspelt, or is this side modelled in more detail?",
     ));
@@ -155,7 +161,7 @@ fn missing(pairs: usize, alone: &[&str], what: &str, findings: &mut Vec<Finding>
 
 /// How segments stand and move in their parents when every coordinate is 0.
 struct Motions<'s> {
-    subject: &'s Subject<'s>,
+    subject: &'s Inspected<'s>,
     pose: Pose,
     jacobian: Jacobian,
 }
@@ -168,7 +174,7 @@ fn reflected(v: Vec3, plane: usize) -> Vec3 {
 }
 
 impl<'s> Motions<'s> {
-    fn new(subject: &'s Subject<'s>) -> Self {
+    fn new(subject: &'s Inspected<'s>) -> Self {
         let mut pose = Pose::new(&subject.program);
         let mut jacobian = Jacobian::new(&subject.program);
         let mut zero = subject.model.defaults();
@@ -210,7 +216,7 @@ impl<'s> Motions<'s> {
         (gap > PLACES_DIFFER.max(0.05 * r.norm())).then_some(gap)
     }
 
-    fn places(&self, plane: usize, pairs: &[[SegmentId; 2]], findings: &mut Vec<Finding>) {
+    fn places(&self, plane: usize, pairs: &[[SegmentId; 2]], findings: &mut Vec<Diagnostic>) {
         let name = |id: SegmentId| self.subject.model.segment(id).name.clone();
         let mut differ: Vec<(f64, String)> = vec![];
         for &[right, left] in pairs {
@@ -220,10 +226,10 @@ impl<'s> Motions<'s> {
                 differ.push((gap, name(left)));
                 continue;
             }
-            findings.push(Finding::new(
+            findings.push(finding(
                 Severity::Warning,
                 "lint/same-side",
-                [name(right), name(left)],
+                [name(right), name(left)].map(Subject::Segment),
                 format!(
                     "the joints of `{}` and `{}` stand in the same place of their parents: the left \
                      one is {} from the mirror of the right one",
@@ -236,10 +242,10 @@ impl<'s> Motions<'s> {
         }
         differ.sort_by(|a, b| b.0.total_cmp(&a.0));
         let Some((most, worst)) = differ.first() else { return };
-        findings.push(Finding::new(
+        findings.push(finding(
             Severity::Note,
             "lint/uneven-places",
-            differ.iter().map(|(_, name)| name.clone()),
+            differ.iter().map(|(_, name)| Subject::Segment(name.clone())),
             format!(
                 "{} of {} joints stand elsewhere than their other side's mirror; most of all that \
                  of `{worst}`, by {}",
@@ -282,7 +288,7 @@ impl<'s> Motions<'s> {
         &self,
         plane: usize,
         pairs: &[[CoordinateId; 2]],
-        findings: &mut Vec<Finding>,
+        findings: &mut Vec<Diagnostic>,
     ) -> Vec<Option<bool>> {
         let mut odd = vec![];
         let senses: Vec<Option<bool>> = pairs
@@ -311,10 +317,10 @@ impl<'s> Motions<'s> {
         }
         for (right, left, angle) in odd {
             let (right, left) = (self.subject.key(right), self.subject.key(left));
-            findings.push(Finding::new(
+            findings.push(finding(
                 Severity::Warning,
                 "lint/uneven-axes",
-                [right.clone(), left.clone()],
+                [right.clone(), left.clone()].map(Subject::Coordinate),
                 format!(
                     "the axes of `{right}` and `{left}` are no mirror images: {}° apart",
                     super::rounded(angle, 2)
@@ -327,10 +333,10 @@ impl<'s> Motions<'s> {
 }
 
 fn ranges(
-    subject: &Subject<'_>,
+    subject: &Inspected<'_>,
     [right, left]: [CoordinateId; 2],
     sense: Option<bool>,
-) -> Option<Finding> {
+) -> Option<Diagnostic> {
     let (r, l) = (real_range(subject.model, right)?, real_range(subject.model, left)?);
     if subject.kind(right) != subject.kind(left) {
         return None;
@@ -363,10 +369,10 @@ fn ranges(
         _ => format!("{both}: the sides have different ranges"),
     };
     let enforced = [right, left].iter().any(|&id| subject.model.coordinate(id).range.enforced);
-    Some(Finding::new(
+    Some(finding(
         if enforced { Severity::Warning } else { Severity::Note },
         "lint/uneven-ranges",
-        [subject.key(right), subject.key(left)],
+        [subject.key(right), subject.key(left)].map(Subject::Coordinate),
         message,
         "give both sides one range, unless a subject's own was measured",
     ))
@@ -374,10 +380,10 @@ fn ranges(
 
 /// One note about all defaults that differ: a model may rest in the middle of a stride.
 fn defaults(
-    subject: &Subject<'_>,
+    subject: &Inspected<'_>,
     pairs: &[[CoordinateId; 2]],
     senses: &[Option<bool>],
-    findings: &mut Vec<Finding>,
+    findings: &mut Vec<Diagnostic>,
 ) {
     let mut differ: Vec<(f64, String)> = vec![];
     for (&[right, left], sense) in pairs.iter().zip(senses) {
@@ -407,7 +413,7 @@ fn defaults(
     }
     differ.sort_by(|a, b| b.0.total_cmp(&a.0));
     let Some((_, worst)) = differ.first() else { return };
-    findings.push(Finding::new(
+    findings.push(finding(
         Severity::Note,
         "lint/uneven-defaults",
         [],

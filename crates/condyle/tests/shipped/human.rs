@@ -1,9 +1,9 @@
 //! The human as a whole: its parts are tested each in a file of its own.
 
 use crate::figure::{Draws, Figure, apart};
-use condyle::lint::{self, Severity};
 use condyle::math::{Affine, Quat};
 use condyle::{Mode, Model, Pose};
+use condyle::{Severity, lint};
 
 /// Stored numbers inside all ranges; the pelvis within half a turn and half a metre.
 fn inside(model: &Model, draws: &mut Draws) -> Vec<f64> {

@@ -8,7 +8,7 @@ use super::super::law::Law;
 use super::super::source::Name;
 use super::super::tree::{Entry, Node, Value};
 use super::FRAME;
-use crate::diagnostic::nearest;
+use condyle_diagnostics::nearest;
 use condyle_math::Vec3;
 use condyle_math::function::Function;
 

@@ -4,7 +4,7 @@ use super::super::draft::CoordinateDraft;
 use super::super::fields::{Fields, Reader};
 use super::super::keys;
 use super::super::tree::{Entry, Node, Value};
-use crate::diagnostic::nearest;
+use condyle_diagnostics::nearest;
 use condyle_model::{CoordinateKind, Range};
 
 impl Reader<'_> {

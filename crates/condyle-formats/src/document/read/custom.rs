@@ -3,7 +3,7 @@
 use super::super::fields::{Fields, Reader};
 use super::super::law::Law;
 use super::super::tree::Value;
-use crate::diagnostic::nearest;
+use condyle_diagnostics::nearest;
 use condyle_model::component::Parameters;
 
 impl Reader<'_> {

@@ -2,9 +2,9 @@
 
 use super::function::{self, AnyFunction};
 use super::{Base, Reader, triple};
-use crate::diagnostic::{Error, nearest};
 use crate::opensim::model::frame::Frames;
 use crate::xml::Element;
+use condyle_diagnostics::{Error, nearest};
 use condyle_math::function::FunctionOfSeveral;
 use condyle_math::{Affine, EulerOrder, Vec3};
 use condyle_model::model::{Closure, Condition};

@@ -1,8 +1,8 @@
 //! Frames by name and path, each resolved to a segment and a fixed transform in it.
 
 use super::{Base, triple};
-use crate::diagnostic::{Error, nearest};
 use crate::xml::Element;
+use condyle_diagnostics::{Error, nearest};
 use condyle_math::{Affine, EulerOrder, Mat3, Vec3};
 use condyle_model::ModelBuilder;
 use std::collections::HashMap;

@@ -1,7 +1,7 @@
 //! Functions of coordinates.
 
-use crate::diagnostic::Error;
 use crate::xml::Element;
+use condyle_diagnostics::Error;
 use condyle_math::function::{
     Curve, Function, FunctionOfSeveral, KnotError, MultivariatePolynomial, PiecewiseLinear,
     Polynomial, SimmSpline,

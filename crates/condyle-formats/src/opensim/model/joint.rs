@@ -17,8 +17,8 @@
 use super::function::{self, AnyFunction};
 use super::joint_graph::PlacedJoint;
 use super::{Reader, triple};
-use crate::diagnostic::Error;
 use crate::xml::Element;
+use condyle_diagnostics::Error;
 use condyle_math::function::{Curve, Function};
 use condyle_math::{Affine, Mat3, Vec3};
 use condyle_model::component::ConstantCurvature;

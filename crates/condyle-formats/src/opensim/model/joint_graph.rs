@@ -8,9 +8,9 @@
 //! joint to it. These are the choices of OpenSim, whose coordinates are thus ours.
 
 use super::{Base, Reader};
-use crate::diagnostic::Error;
 use crate::opensim::model::triple;
 use crate::xml::Element;
+use condyle_diagnostics::Error;
 use condyle_math::{Affine, EulerOrder, Vec3};
 use condyle_model::SegmentId;
 use condyle_model::model::{Closure, Condition};

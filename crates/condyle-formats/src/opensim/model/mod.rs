@@ -26,10 +26,11 @@ mod function;
 mod joint;
 mod joint_graph;
 
-use crate::diagnostic::{Diagnostic, Error, Read, Warnings};
 use crate::xml::{Element, XmlDocument};
+use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Warnings};
 use condyle_math::Vec3;
-use condyle_model::{CoordinateKind, Model, ModelBuilder, SegmentId, Severity};
+use condyle_model::model::AXIS_LENGTH;
+use condyle_model::{CoordinateKind, Model, ModelBuilder, SegmentId};
 use frame::Frames;
 
 /// Reads a model from the bytes of an `.osim` file.
@@ -89,42 +90,18 @@ impl<'d, 'w> Reader<'d, 'w> {
         constraint::read_all(&mut self)?;
         self.markers()?;
         let line = self.element.place();
-        match self.builder.build_with_findings() {
-            Ok((model, findings)) => {
-                warn_of_degrees(&model, self.element, self.warnings);
-                let directions = directions(&model);
-                if directions > MOST_DIRECTIONS {
-                    return Err(Error::new(
-                        "osim/size",
-                        format!("the coordinates move segments in {directions} ways"),
-                    )
-                    .with_help(format!("at most {MOST_DIRECTIONS} are computed; use fewer bodies"))
-                    .at(line));
-                }
-                for finding in findings {
-                    if finding.severity == Severity::Warning && finding.code != "model/axis-length"
-                    {
-                        let said = Diagnostic::new(finding.code, finding.message);
-                        self.warnings.push(said.with_help(finding.help));
-                    }
-                }
-                Ok(model)
-            }
-            Err(findings) => {
-                let errors: Vec<_> =
-                    findings.into_iter().filter(|f| f.severity == Severity::Error).collect();
-                let more = match errors.len() {
-                    0 | 1 => String::new(),
-                    n => format!(" (and {} more)", n - 1),
-                };
-                match errors.into_iter().next() {
-                    Some(f) => {
-                        Err(Error::new(f.code, f.message + &more).with_help(f.help).at(line))
-                    }
-                    None => Err(Error::new("osim/model", "the model cannot be built").at(line)),
-                }
-            }
+        let built = self.builder.build_with_warnings();
+        let Read { value: model, warnings } = built.map_err(|error| at_model(error, line))?;
+        warn_of_degrees(&model, self.element, self.warnings);
+        let directions = directions(&model);
+        if directions > MOST_DIRECTIONS {
+            let message = format!("the coordinates move segments in {directions} ways");
+            return Err(Error::new("osim/size", message)
+                .with_help(format!("at most {MOST_DIRECTIONS} are computed; use fewer bodies"))
+                .at(line));
         }
+        self.warnings.extend(warnings.into_iter().filter(|w| w.code != AXIS_LENGTH).collect());
+        Ok(model)
     }
 
     fn warn(
@@ -134,7 +111,7 @@ impl<'d, 'w> Reader<'d, 'w> {
         message: impl Into<String>,
         help: &str,
     ) {
-        let said = Diagnostic::new(code, message).at(at.place()).with_help(help);
+        let said = Diagnostic::warning(code, message).at(at.place()).with_help(help);
         self.warnings.push(said);
     }
 
@@ -172,6 +149,17 @@ impl<'d, 'w> Reader<'d, 'w> {
     }
 }
 
+/// The errors of a model that contradicts itself, at its element.
+fn at_model(error: Error, line: Place) -> Error {
+    let errors = error.into_diagnostics().into_iter().filter(|f| f.severity == Severity::Error);
+    let located = errors.map(|error| error.at(line)).take(50).collect();
+    let unsaid = || Error::new("osim/model", "the model cannot be built").at(line);
+    Error::of(located).unwrap_or_else(unsaid).contradiction()
+}
+
+/// The range of a coordinate looks like degrees where radians are meant.
+pub const DEGREES: &str = "osim/degrees";
+
 /// Angles in a model are radians: a range of several turns that is at most 360 was meant in degrees.
 fn warn_of_degrees(model: &Model, element: Element<'_>, warnings: &mut Warnings) {
     let turns = 4.0 * std::f64::consts::PI..=360.0;
@@ -187,7 +175,7 @@ fn warn_of_degrees(model: &Model, element: Element<'_>, warnings: &mut Warnings)
         let message = format!("the range of `{}` reaches {most} radians", coordinate.name);
         let place = here.unwrap_or(element).place();
         warnings.push(
-            Diagnostic::new("osim/degrees", message)
+            Diagnostic::warning(DEGREES, message)
                 .at(place)
                 .with_help("is it in degrees? the file's angles must be in radians"),
         );

@@ -1,22 +1,41 @@
 //! What can be wrong with components.
 
-use super::{Finding, Severity, finding, source_type};
+use super::{AXIS_LENGTH, finding, source_type};
 use crate::component::{
     Compensate, Component, Contact, Curve, JointCone, Law, MOST_COMBINED, MOST_LAW_INPUTS, Shear,
     Source, Swinging,
 };
-use crate::model::{Condition, Model, Node, SegmentId, dependency_order};
+use crate::model::{Condition, Model, NamedComponent, Node, SegmentId, dependency_order};
+use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_math::Vec3;
+use std::fmt;
 
-pub(super) fn check_components(model: &Model, findings: &mut Vec<Finding>) {
+/// A component as sentences and reports name it.
+struct Part {
+    sentence: String,
+    subject: Subject,
+}
+
+impl Part {
+    fn of(model: &Model, named: &NamedComponent) -> Self {
+        let (kind, set) = (named.component.kind(), &model.joint_sets[named.joint_set.index()].name);
+        Self {
+            sentence: format!("component `{}` ({kind}) of joint set `{set}`", named.name),
+            subject: model.component_subject(named),
+        }
+    }
+}
+
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.sentence)
+    }
+}
+
+pub(super) fn check_components(model: &Model, findings: &mut Vec<Diagnostic>) {
     let deforming = deforming_components(model);
     for named in &model.components {
-        let place = format!(
-            "component `{}` ({}) of joint set `{}`",
-            named.name,
-            named.component.kind(),
-            model.joint_sets[named.joint_set.index()].name
-        );
+        let place = Part::of(model, named);
         for (port, expected, source) in named.component.inputs() {
             let found = source_type(model, source);
             if let Source::Output(id, output) = source
@@ -25,6 +44,7 @@ pub(super) fn check_components(model: &Model, findings: &mut Vec<Finding>) {
                 findings.push(finding(
                     Severity::Error,
                     "model/no-such-output",
+                    place.subject.clone(),
                     format!(
                         "port `{port}` of {place} reads output {} of `{}`",
                         output + 1,
@@ -37,6 +57,7 @@ pub(super) fn check_components(model: &Model, findings: &mut Vec<Finding>) {
                 findings.push(finding(
                     Severity::Error,
                     "model/port-type",
+                    place.subject.clone(),
                     format!("port `{port}` of {place} gets a {found:?}").to_lowercase(),
                     format!("connect a {expected:?}").to_lowercase(),
                 ));
@@ -83,30 +104,39 @@ fn axes(component: &Component) -> Vec<(&'static str, Vec3)> {
     }
 }
 
-fn check_axis(place: &str, name: &str, axis: Vec3, findings: &mut Vec<Finding>) {
+fn check_axis(place: &Part, name: &str, axis: Vec3, findings: &mut Vec<Diagnostic>) {
     let length = axis.norm();
     if !(length.is_finite() && length > 1e-9) {
         findings.push(finding(
             Severity::Error,
             "model/axis",
+            place.subject.clone(),
             format!("the {name} of {place} has length {length}"),
             "give a direction, such as [0, 0, 1]",
         ));
     } else if (length - 1.0).abs() > 1e-6 {
         findings.push(finding(
             Severity::Warning,
-            "model/axis-length",
+            AXIS_LENGTH,
+            place.subject.clone(),
             format!("the {name} of {place} has length {length}"),
             "it is normalised; write it with length 1 to silence this",
         ));
     }
 }
 
-fn check_arity(place: &str, has: usize, takes: usize, most: usize, findings: &mut Vec<Finding>) {
+fn check_arity(
+    place: &Part,
+    has: usize,
+    takes: usize,
+    most: usize,
+    findings: &mut Vec<Diagnostic>,
+) {
     if has != takes {
         findings.push(finding(
             Severity::Error,
             "model/arity",
+            place.subject.clone(),
             format!("{place} has {has} inputs but its function takes {takes}"),
             "connect as many inputs as the function has arguments",
         ));
@@ -115,18 +145,20 @@ fn check_arity(place: &str, has: usize, takes: usize, most: usize, findings: &mu
         findings.push(finding(
             Severity::Error,
             "model/arity",
+            place.subject.clone(),
             format!("{place} has {has} inputs"),
             format!("it takes at most {most}"),
         ));
     }
 }
 
-fn check_cone(place: &str, cone: &JointCone, findings: &mut Vec<Finding>) {
+fn check_cone(place: &Part, cone: &JointCone, findings: &mut Vec<Diagnostic>) {
     let oblique = cone.obliqueness();
     if oblique.is_nan() || oblique > 1e-6 {
         findings.push(finding(
             Severity::Error,
             "model/cone-axes",
+            place.subject.clone(),
             format!("the second axis of {place} is not perpendicular to the others"),
             "turn about such axes as z, x, y: the second at a right angle to the first and to the \
              third (with two angles: to the rest direction)",
@@ -136,29 +168,32 @@ fn check_cone(place: &str, cone: &JointCone, findings: &mut Vec<Finding>) {
         findings.push(finding(
             Severity::Warning,
             "model/cone-twist",
+            place.subject.clone(),
             format!("{place} has bounds of twist but only two angles"),
             "give it a third angle, or leave the bounds away",
         ));
     }
 }
 
-fn check_shear(place: &str, shear: &Shear, findings: &mut Vec<Finding>) {
+fn check_shear(place: &Part, shear: &Shear, findings: &mut Vec<Diagnostic>) {
     let along = shear.along.normalized().dot(shear.across.normalized());
     if along.abs() > 1e-6 {
         findings.push(finding(
             Severity::Error,
             "model/shear-axes",
+            place.subject.clone(),
             format!("the two directions of {place} are not perpendicular"),
             "layers slide at a right angle to the direction in which they are stacked",
         ));
     }
 }
 
-fn check_curve(place: &str, curve: &Curve, findings: &mut Vec<Finding>) {
+fn check_curve(place: &Part, curve: &Curve, findings: &mut Vec<Diagnostic>) {
     if curve.least_heading() < 1e-3 {
         findings.push(finding(
             Severity::Warning,
             "model/curve-heading",
+            place.subject.clone(),
             format!(
                 "the curve of {place} stops, or runs along `up`, so its heading is undefined there"
             ),
@@ -186,7 +221,7 @@ fn deforms(deforming: &[bool], source: Source) -> bool {
     matches!(source, Source::Output(id, _) if deforming[id.index()])
 }
 
-fn check_closures(model: &Model, deforming: &[bool], findings: &mut Vec<Finding>) {
+fn check_closures(model: &Model, deforming: &[bool], findings: &mut Vec<Diagnostic>) {
     for closure in &model.closures {
         let Condition::Frames { at } = &closure.condition else { continue };
         for (segment, _) in at {
@@ -200,6 +235,7 @@ fn check_closures(model: &Model, deforming: &[bool], findings: &mut Vec<Finding>
                     findings.push(finding(
                         Severity::Error,
                         "model/closure-deforms",
+                        Subject::Closure(closure.name.clone()),
                         format!(
                             "closure `{}` holds frames together, but `{}` stretches or shears",
                             closure.name, segment.name
@@ -217,15 +253,16 @@ fn check_closures(model: &Model, deforming: &[bool], findings: &mut Vec<Finding>
 
 fn check_compensate(
     model: &Model,
-    place: &str,
+    place: &Part,
     c: &Compensate,
     deforming: &[bool],
-    findings: &mut Vec<Finding>,
+    findings: &mut Vec<Diagnostic>,
 ) {
     if !(0.0..=1.0).contains(&c.weight) {
         findings.push(finding(
             Severity::Error,
             "model/weight",
+            place.subject.clone(),
             format!("{place} has the weight {}", c.weight),
             "give a weight from 0 (nothing is undone) to 1 (all is)",
         ));
@@ -242,6 +279,7 @@ fn check_compensate(
         findings.push(finding(
             Severity::Error,
             "model/not-an-ancestor",
+            place.subject.clone(),
             format!(
                 "{place} compensates `{}`, which is no ancestor of `{}`",
                 model.segment(*id).name,
@@ -257,16 +295,17 @@ fn check_compensate(
 
 fn check_contact(
     model: &Model,
-    place: &str,
+    place: &Part,
     c: &Contact,
     deforming: &[bool],
-    findings: &mut Vec<Finding>,
+    findings: &mut Vec<Diagnostic>,
 ) {
     let path = model.path_between(c.surface, c.segment);
     if path.is_empty() {
         findings.push(finding(
             Severity::Error,
             "model/not-an-ancestor",
+            place.subject.clone(),
             format!(
                 "{place} glides on `{}`, which is no ancestor of `{}`",
                 model.segment(c.surface).name,
@@ -283,6 +322,7 @@ fn check_contact(
         findings.push(finding(
             Severity::Error,
             "model/arity",
+            place.subject.clone(),
             format!("{place} has {} drivers", c.drivers.len()),
             "blend its pairs over at most two",
         ));
@@ -291,16 +331,17 @@ fn check_contact(
 
 fn check_rigid(
     model: &Model,
-    place: &str,
+    place: &Part,
     segment: SegmentId,
     motion: Option<Source>,
     deforming: &[bool],
-    findings: &mut Vec<Finding>,
+    findings: &mut Vec<Diagnostic>,
 ) {
     if motion.is_some_and(|motion| deforms(deforming, motion)) {
         findings.push(finding(
             Severity::Error,
             "model/deforms",
+            place.subject.clone(),
             format!(
                 "{place} needs rotations, but the motion of `{}` stretches or shears",
                 model.segment(segment).name

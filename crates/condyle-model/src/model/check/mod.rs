@@ -5,61 +5,41 @@ mod order;
 
 pub(crate) use order::{Node, dependency_order};
 
-use super::{CoordinateId, CoordinateKind, Model, SegmentId};
+use super::{CoordinateKind, Model, SegmentId};
 use crate::component::{PortType, Source};
 use component::check_components;
+use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use std::collections::HashMap;
-use std::fmt;
 
-/// How bad a finding is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Severity {
-    /// Allowed, but unlikely to be meant.
-    Warning,
-    /// The model cannot be built.
-    Error,
-}
-
-/// Something that is wrong, or odd, in a model.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Finding {
-    /// How bad it is.
-    pub severity: Severity,
-    /// A short stable name of the rule.
-    pub code: &'static str,
-    /// What is wrong, with the names of what is concerned.
-    pub message: String,
-    /// What would be right.
-    pub help: String,
-}
-
-impl fmt::Display for Finding {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let severity = if self.severity == Severity::Error { "error" } else { "warning" };
-        write!(f, "{severity} [{}]: {}; {}", self.code, self.message, self.help)
-    }
-}
+/// A range whose lower limit lies above its upper one.
+pub const CROSSING_RANGE: &str = "model/crossing-range";
+/// A default value outside its range.
+pub const DEFAULT_OUTSIDE_RANGE: &str = "model/default-outside-range";
+/// An axis whose length is not 1.
+pub const AXIS_LENGTH: &str = "model/axis-length";
 
 fn finding(
     severity: Severity,
     code: &'static str,
+    subject: Subject,
     message: impl Into<String>,
     help: impl Into<String>,
-) -> Finding {
-    Finding { severity, code, message: message.into(), help: help.into() }
+) -> Diagnostic {
+    Diagnostic::new(severity, code, message).about(subject).with_help(help)
 }
 
 /// All findings about a model whose parts refer to each other only by position.
-pub(super) fn check(model: &Model) -> Vec<Finding> {
+pub(super) fn check(model: &Model) -> Vec<Diagnostic> {
     let mut findings = Vec::new();
     check_names(model, &mut findings);
     check_segments(model, &mut findings);
     check_coordinates(model, &mut findings);
     check_components(model, &mut findings);
-    if let Err(circle) = dependency_order(model) {
+    if let Err((first, circle)) = dependency_order(model) {
         findings.push(finding(
             Severity::Error,
             "model/cycle",
+            first,
             format!("components depend on each other in a circle: {}", circle.join(" -> ")),
             "break the circle by removing one of these links",
         ));
@@ -80,29 +60,34 @@ fn duplicates<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     twice
 }
 
-fn check_names(model: &Model, findings: &mut Vec<Finding>) {
-    let mut report = |what: &str, names: Vec<&str>| {
+fn check_names(model: &Model, findings: &mut Vec<Diagnostic>) {
+    let mut report = |what: &str, subject: fn(String) -> Subject, names: Vec<&str>| {
         for name in names {
             findings.push(finding(
                 Severity::Error,
                 "model/duplicate-name",
+                subject(name.to_owned()),
                 format!("two {what}s are named `{name}`"),
                 format!("give each {what} a name of its own"),
             ));
         }
     };
-    report("segment", duplicates(model.segments.iter().map(|s| s.name.as_str())));
-    report("joint set", duplicates(model.joint_sets.iter().map(|s| s.name.as_str())));
-    report("marker", duplicates(model.markers.iter().map(|m| m.name.as_str())));
+    report("segment", Subject::Segment, duplicates(model.segments.iter().map(|s| s.name.as_str())));
+    report(
+        "joint set",
+        Subject::JointSet,
+        duplicates(model.joint_sets.iter().map(|s| s.name.as_str())),
+    );
+    report("marker", Subject::Marker, duplicates(model.markers.iter().map(|m| m.name.as_str())));
     let keys: Vec<String> = model
         .coordinates
         .iter()
         .map(|c| format!("{}/{}", model.joint_sets[c.joint_set.index()].name, c.name))
         .collect();
-    report("coordinate", duplicates(keys.iter().map(String::as_str)));
+    report("coordinate", Subject::Coordinate, duplicates(keys.iter().map(String::as_str)));
 }
 
-fn check_segments(model: &Model, findings: &mut Vec<Finding>) {
+fn check_segments(model: &Model, findings: &mut Vec<Diagnostic>) {
     let n = model.segments.len();
     // A walk of more than n steps towards the root has met a segment twice.
     let mut rooted = vec![false; n];
@@ -124,6 +109,7 @@ fn check_segments(model: &Model, findings: &mut Vec<Finding>) {
                 findings.push(finding(
                     Severity::Error,
                     "model/segment-cycle",
+                    Subject::Segment(names[0].to_owned()),
                     format!("segments are their own ancestors: {}", names.join(" -> ")),
                     "let one of them hang on the world, or close the loop with a constraint",
                 ));
@@ -143,6 +129,7 @@ fn check_segments(model: &Model, findings: &mut Vec<Finding>) {
                 findings.push(finding(
                     Severity::Error,
                     "model/not-finite",
+                    Subject::Segment(segment.name.clone()),
                     format!("the joint frame of segment `{}` {name} is not finite", segment.name),
                     "give numbers that are neither NaN nor infinite",
                 ));
@@ -154,6 +141,7 @@ fn check_segments(model: &Model, findings: &mut Vec<Finding>) {
             findings.push(finding(
                 Severity::Error,
                 "model/port-type",
+                Subject::Segment(segment.name.clone()),
                 format!("segment `{}` is moved by a scalar, not by a transform", segment.name),
                 "connect the output of a rotate, translate, ball or product component",
             ));
@@ -161,13 +149,13 @@ fn check_segments(model: &Model, findings: &mut Vec<Finding>) {
     }
 }
 
-fn check_coordinates(model: &Model, findings: &mut Vec<Finding>) {
-    for (index, c) in model.coordinates.iter().enumerate() {
-        let key = model.coordinate_key(CoordinateId(index as u32));
+fn check_coordinates(model: &Model, findings: &mut Vec<Diagnostic>) {
+    for (c, key) in model.coordinates.iter().zip(model.coordinate_keys()) {
         if !c.default.iter().all(|v| v.is_finite()) {
             findings.push(finding(
                 Severity::Error,
                 "model/not-finite",
+                Subject::Coordinate(key.clone()),
                 format!("the default of coordinate `{key}` is not finite"),
                 "give a number",
             ));
@@ -177,6 +165,7 @@ fn check_coordinates(model: &Model, findings: &mut Vec<Finding>) {
             findings.push(finding(
                 Severity::Error,
                 "model/not-finite",
+                Subject::Coordinate(key.clone()),
                 format!("a limit of coordinate `{key}` is not a number"),
                 "leave a limit away where there is none",
             ));
@@ -185,7 +174,8 @@ fn check_coordinates(model: &Model, findings: &mut Vec<Finding>) {
         {
             findings.push(finding(
                 if c.range.enforced { Severity::Error } else { Severity::Warning },
-                "model/crossing-range",
+                CROSSING_RANGE,
+                Subject::Coordinate(key.clone()),
                 format!(
                     "coordinate `{key}` has a lower limit {lower} above its upper limit {upper}"
                 ),
@@ -197,7 +187,8 @@ fn check_coordinates(model: &Model, findings: &mut Vec<Finding>) {
         {
             findings.push(finding(
                 Severity::Warning,
-                "model/default-outside-range",
+                DEFAULT_OUTSIDE_RANGE,
+                Subject::Coordinate(key.clone()),
                 format!(
                     "the default {} of coordinate `{key}` lies outside its range {} to {}",
                     c.default[0],
@@ -213,6 +204,7 @@ fn check_coordinates(model: &Model, findings: &mut Vec<Finding>) {
             findings.push(finding(
                 Severity::Error,
                 "model/port-type",
+                Subject::Coordinate(key.clone()),
                 format!("coordinate `{key}` follows something that is not a scalar"),
                 "let it follow the output of a map or combine component",
             ));

@@ -2,6 +2,7 @@
 
 use crate::component::Source;
 use crate::model::{ComponentId, CoordinateId, Model};
+use condyle_diagnostics::Subject;
 
 /// One thing that is computed: a coordinate's effective value, or a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,8 +16,8 @@ pub(crate) enum Node {
 /// Order and circles are settled over the whole model, per component and never per bone.
 ///
 /// # Errors
-/// The names along a circle, the first one repeated at the end.
-pub(crate) fn dependency_order(model: &Model) -> Result<Vec<Node>, Vec<String>> {
+/// The first node of a circle, and the names along it, the first one repeated at the end.
+pub(crate) fn dependency_order(model: &Model) -> Result<Vec<Node>, (Subject, Vec<String>)> {
     let coordinates = model.coordinates.len();
     let number = |source: Source| match source {
         Source::Coordinate(id) => id.index(),
@@ -30,13 +31,13 @@ pub(crate) fn dependency_order(model: &Model) -> Result<Vec<Node>, Vec<String>> 
             model.reads(id).into_iter().map(number).collect()
         }
     };
-    let name = |node: usize| {
-        if node < coordinates {
-            model.coordinate_key(CoordinateId(node as u32))
-        } else {
-            let named = &model.components[node - coordinates];
-            format!("{}.{}", model.joint_sets[named.joint_set.index()].name, named.name)
-        }
+    let subject = |node: usize| match node.checked_sub(coordinates) {
+        None => Subject::Coordinate(model.coordinate_key(CoordinateId(node as u32))),
+        Some(component) => model.component_subject(&model.components[component]),
+    };
+    let name = |node: usize| match subject(node) {
+        Subject::Component { joint_set, name } => format!("{joint_set}.{name}"),
+        other => other.name().to_owned(),
     };
     #[derive(Clone, Copy, PartialEq)]
     enum Mark {
@@ -79,7 +80,7 @@ pub(crate) fn dependency_order(model: &Model) -> Result<Vec<Node>, Vec<String>> 
                         stack[from..].iter().map(|(n, ..)| name(*n)).collect();
                     names.reverse();
                     names.insert(0, name(next));
-                    return Err(names);
+                    return Err((subject(next), names));
                 }
             }
         }
