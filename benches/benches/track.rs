@@ -49,7 +49,11 @@ fn synthetic(model: &Model, frames: usize) -> Recording {
         labels: model.markers().iter().map(|marker| marker.name.clone()).collect(),
         rate: walk::RATE,
         times: (0..frames).map(|frame| frame as f64 / walk::RATE).collect(),
-        positions: walk::recorded(model, &motion, 0.002).concat(),
+        positions: walk::recorded(model, &motion, 0.002)
+            .concat()
+            .into_iter()
+            .map(Into::into)
+            .collect(),
         units: LengthUnit::Metre,
     }
 }

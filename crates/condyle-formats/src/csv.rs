@@ -9,9 +9,9 @@
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
-use crate::table::{AngleUnit, Table};
 use crate::text::{Line, check_size, decimal, lines, number, read_decoded};
 use condyle_diagnostics::{Diagnostic, Error, Place, Read, Warnings};
+use condyle_motion::{AngleUnit, Table};
 
 /// Reads a table.
 ///

@@ -20,14 +20,11 @@ pub mod csv;
 pub mod document;
 pub mod glb;
 pub mod opensim;
-mod recording;
 pub mod sto;
-mod table;
 pub mod text;
 pub mod trc;
 pub mod xml;
 
 pub use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Subject, nearest};
-pub use recording::{Gap, LengthUnit, Recording};
-pub use table::{AngleUnit, Table, coordinate_name};
+pub use condyle_motion::{AngleUnit, Gap, LengthUnit, Observed, Recording, Table};
 pub use xml::{Element, XmlDocument};

@@ -5,14 +5,14 @@
 //! Motor Control of Human Movement*); the knee glides as in Yamaguchi & Zajac 1989 and carries a
 //! patella as in Rajagopal et al. 2016. Ranges, marker places and the walk are illustrative.
 
-use crate::motion::Motion;
-use condyle_formats::{LengthUnit, Recording};
+use condyle_math::Vec3;
 use condyle_math::function::{Curve, Function, SimmSpline};
-use condyle_math::{Affine, Vec3};
 use condyle_model::{
-    CoordinateId, CoordinateKind, JointSetId, Mode, Model, ModelBuilder, Pose, Program, Range,
-    SegmentId, Source,
+    CoordinateId, CoordinateKind, JointSetId, Mode, Model, ModelBuilder, Program, Range, SegmentId,
+    Source,
 };
+use condyle_motion::Motion;
+use condyle_motion::{Observed, Recording};
 use std::f64::consts::TAU;
 
 /// Stature of the figure in metres.
@@ -388,20 +388,15 @@ pub struct Flaws {
 
 /// The markers of a model along a motion, as a laboratory might have recorded them.
 pub fn record(model: &Model, motion: &Motion, flaws: &Flaws) -> Recording {
-    let program = Program::compile(model);
-    let mut pose = Pose::new(&program);
+    let recording = motion.virtual_markers(model, Mode::Open);
+    debug_assert!(recording.is_ok(), "a motion fits its model");
+    let Ok(mut recording) = recording else { return Recording::default() };
     let mut dice = Dice(flaws.seed);
-    let labels: Vec<String> = model.markers().iter().map(|m| m.name.clone()).collect();
-    let (frames, count) = (motion.frames.len(), labels.len());
-    let mut positions = Vec::with_capacity(frames * count);
-    for stored in &motion.frames {
-        let evaluated = program.evaluate(stored, Mode::Open, &mut pose);
-        debug_assert!(evaluated.is_ok(), "a motion fits its model");
-        for marker in model.markers() {
-            let frame: Affine = pose.frame(marker.segment);
-            let noise = Vec3::new(dice.normal(), dice.normal(), dice.normal()) * flaws.noise;
-            positions.push(Some((frame * marker.point + noise).to_array()));
-        }
+    let (frames, count) = (motion.frames.len(), recording.labels.len());
+    let positions = &mut recording.positions;
+    for [x, y, z] in positions.iter_mut().filter_map(Observed::position_mut) {
+        let noise = Vec3::new(dice.normal(), dice.normal(), dice.normal()) * flaws.noise;
+        (*x, *y, *z) = (*x + noise.x, *y + noise.y, *z + noise.z);
     }
     // Gaps of a tenth of a second or so, as when an arm hides a marker.
     let length = 12.min(frames.max(1));
@@ -410,29 +405,19 @@ pub fn record(model: &Model, motion: &Motion, flaws: &Flaws) -> Recording {
         for _ in 0..gaps {
             let start = dice.below(frames.saturating_sub(length).max(1));
             for frame in start..(start + length).min(frames) {
-                positions[frame * count + marker] = None;
+                positions[frame * count + marker] = Observed::MISSING;
             }
         }
     }
     if let Some((pair, range)) = &flaws.swap {
-        let place = |name: &String| labels.iter().position(|l| l == name);
+        let place = |name: &String| recording.labels.iter().position(|l| l == name);
         if let [Some(a), Some(b)] = [place(&pair[0]), place(&pair[1])] {
             for frame in range.clone().filter(|f| *f < frames) {
                 positions.swap(frame * count + a, frame * count + b);
             }
         }
     }
-    let rate = match motion.times[..] {
-        [first, .., last] => (frames - 1) as f64 / (last - first),
-        _ => 100.0,
-    };
-    Recording {
-        labels,
-        rate,
-        times: motion.times.clone(),
-        positions,
-        units: LengthUnit::Millimetre,
-    }
+    recording
 }
 
 /// SplitMix64 (Steele, Lea & Flood 2014): the same numbers everywhere.

@@ -27,7 +27,7 @@
 //!
 //! ```
 //! use condyle::tracking::{Plan, track};
-//! # use condyle::{ModelBuilder, formats::{LengthUnit, Recording}, math::Vec3};
+//! # use condyle::{LengthUnit, ModelBuilder, Recording, math::Vec3};
 //! # let mut b = ModelBuilder::new("leg");
 //! # let shank = b.segment("shank", None);
 //! # b.hinge("knee", shank, "flexion", -Vec3::Z);
@@ -38,7 +38,7 @@
 //!     labels: vec!["ankle".into()],
 //!     rate: 100.0,
 //!     times: vec![0.0],
-//!     positions: vec![Some([-0.20, -0.35, 0.0])],
+//!     positions: vec![[-0.20, -0.35, 0.0].into()],
 //!     units: LengthUnit::Metre,
 //! };
 //! let tracking = track(&model, &recording, &Plan::default(), &mut |_, _| {}).unwrap();
@@ -52,7 +52,6 @@
 pub mod figure;
 pub mod lint;
 pub mod matching;
-pub mod motion;
 pub mod open;
 pub mod scaling;
 pub mod scene;
@@ -66,7 +65,9 @@ pub use condyle_model::{
     self as model, Component, Coordinate, CoordinateId, CoordinateKind, Jacobian, Mode, Model,
     ModelBuilder, Pose, Program, Range, SegmentId, Source,
 };
-pub use motion::Motion;
+pub use condyle_motion::{
+    self as motion, AngleUnit, LengthUnit, Motion, Observed, Posture, Recording, Table,
+};
 
 /// The README's examples, run as tests.
 #[cfg(doctest)]

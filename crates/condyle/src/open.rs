@@ -1,10 +1,12 @@
 //! Files by path, with errors and warnings that carry the path.
 
 use crate::shipped;
+use condyle_diagnostics::{Diagnostic, Error, Place, Read, nearest};
 use condyle_formats::document::{self, Document};
 use condyle_formats::opensim::{model as osim, setup};
-use condyle_formats::{Diagnostic, Error, Place, Read, Recording, Table, csv, nearest, sto, trc};
+use condyle_formats::{csv, sto, trc};
 use condyle_model::Model;
+use condyle_motion::{Recording, Table};
 use std::fmt;
 use std::path::{Path, PathBuf};
 

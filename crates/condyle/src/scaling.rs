@@ -23,10 +23,11 @@
 //! generic body, while a person's are those of the skin on that day.
 
 use crate::matching::match_markers;
-use condyle_formats::{Diagnostic, Recording};
+use condyle_diagnostics::Diagnostic;
 use condyle_math::Vec3;
 use condyle_model::component::Component;
 use condyle_model::{Mode, Model, Pose, SegmentId};
+use condyle_motion::Recording;
 use condyle_track::{FrameAnswer, FrameStatus, MarkerTask, Options, Scratch, Tasks, Tracker};
 use std::fmt;
 
@@ -189,7 +190,7 @@ impl std::error::Error for ScaleError {}
 ///     labels: vec!["a".into(), "b".into(), "c".into()],
 ///     rate: 100.0,
 ///     times: vec![0.0],
-///     positions: [0.15, 0.3, 0.6].map(|x| Some([x, 0.0, 0.0])).to_vec(),
+///     positions: [0.15, 0.3, 0.6].map(|x| [x, 0.0, 0.0].into()).to_vec(),
 ///     units: LengthUnit::Metre,
 /// };
 /// let scaled = fit(&model, &recording, &Plan::default()).unwrap();

@@ -1,12 +1,13 @@
 //! A model in motion as a scene that any viewer opens.
 
-use crate::motion::Motion;
+use condyle_diagnostics::{Diagnostic, Read};
 use condyle_formats::glb::{
     Finish, LocalPose, MarkerTrack, Scene, SceneNode, Shape, Track, UpAxis,
 };
-use condyle_formats::{Diagnostic, Read, Recording};
 use condyle_math::{Affine, Vec3};
 use condyle_model::{Mode, Model, Pose, Program, SegmentId};
+use condyle_motion::Motion;
+use condyle_motion::Recording;
 use std::collections::BTreeSet;
 
 /// Bones as simple shapes, the motion's coordinates taken as they are: [`baked`] in open mode,

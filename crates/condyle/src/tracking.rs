@@ -1,10 +1,10 @@
 //! A recording in, a motion out.
 
 use crate::matching::match_markers;
-use crate::motion::Motion;
+use condyle_diagnostics::Diagnostic;
 use condyle_formats::opensim::setup::{CoordinateTarget, IkSetup, IkTasks};
-use condyle_formats::{Diagnostic, Recording, Table};
 use condyle_model::{CoordinateId, Model};
+use condyle_motion::{BLANK, Motion, Recording, Table};
 use condyle_track::robust::{self, Corrected};
 use condyle_track::sequence;
 use condyle_track::{
@@ -246,7 +246,7 @@ fn add_coordinate_tasks(
 ) {
     let file = plan.coordinate_file.as_ref().map(|table| {
         let (motion, said) = Motion::from_table(model, table);
-        warnings.extend(said.into_iter().filter(|d| d.code == "motion/blank"));
+        warnings.extend(said.into_iter().filter(|d| d.code == BLANK));
         (motion, table)
     });
     for (name, weight, target) in &plan.coordinates {
@@ -262,9 +262,9 @@ fn add_coordinate_tasks(
             (CoordinateTarget::Default, _) => Target::Constant(model.coordinate(id).default[0]),
             (CoordinateTarget::Manual(value), _) => Target::Constant(*value),
             (CoordinateTarget::FromFile, Some((motion, table))) if table.column(name).is_some() => {
-                let place = model.stored_range(id).start;
-                let times = &recording.times[frames.clone()];
-                Target::PerFrame(times.iter().map(|&t| interpolated(motion, place, t)).collect())
+                let times = recording.times[frames.clone()].iter();
+                let value = |&t| motion.at(model, t).map_or(f64::NAN, |q| model.value(&q, id));
+                Target::PerFrame(times.map(value).collect())
             }
             (CoordinateTarget::FromFile, _) => {
                 let message = format!("no coordinate file gives values for `{name}`");
@@ -274,20 +274,6 @@ fn add_coordinate_tasks(
             }
         };
         tasks.coordinates.push(CoordinateTask { coordinate: id, weight: *weight, target });
-    }
-}
-
-/// A stored number of a motion at a time, linear between frames; NaN outside of it.
-fn interpolated(motion: &Motion, place: usize, time: f64) -> f64 {
-    let after = motion.times.partition_point(|&t| t < time);
-    let value = |i: usize| motion.frames.get(i).map_or(f64::NAN, |frame| frame[place]);
-    match (after.checked_sub(1), motion.times.get(after)) {
-        (_, Some(&t)) if (t - time).abs() < 1e-9 => value(after),
-        (Some(before), Some(&t1)) => {
-            let t0 = motion.times[before];
-            value(before) + (value(after) - value(before)) * (time - t0) / (t1 - t0)
-        }
-        _ => f64::NAN,
     }
 }
 
@@ -311,7 +297,9 @@ impl Recorded for Ordered<'_> {
     fn targets(&self, frame: usize, targets: &mut Vec<Option<[f64; 3]>>) {
         let row = self.recording.frame(self.first + frame);
         targets.clear();
-        targets.extend(self.labels.iter().map(|&label| row.get(label).copied().flatten()));
+        targets.extend(
+            self.labels.iter().map(|&label| row.get(label).and_then(|seen| seen.position())),
+        );
     }
 }
 

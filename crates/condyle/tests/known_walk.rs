@@ -1,5 +1,6 @@
 //! Tracking a recording whose motion is known.
 
+use condyle::Observed;
 use condyle::figure::{Flaws, record, walk, walker};
 use condyle::formats::Recording;
 use condyle::tracking::{Plan, Swap, Tracking, track};
@@ -87,7 +88,7 @@ fn frames_without_markers_are_marked_and_the_run_goes_on() {
     let flaws = Flaws { noise: 0.001, missing: 0.0, swap: None, seed: 9 };
     let mut recording = record(&model, &truth, &flaws);
     let width = recording.labels.len();
-    recording.positions[30 * width..45 * width].fill(None);
+    recording.positions[30 * width..45 * width].fill(Observed::MISSING);
     let tracking = run(&model, &recording, &Plan::default());
     let failed: Vec<usize> = tracking.summary().failed.iter().map(|f| f.0).collect();
     assert_eq!(failed, (30..45).collect::<Vec<_>>());

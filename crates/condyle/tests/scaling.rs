@@ -1,5 +1,6 @@
 //! Models made as large as a person, against persons that are made of known factors.
 
+use condyle::Observed;
 use condyle::formats::{LengthUnit, Recording, document};
 use condyle::math::{Mat3, Vec3};
 use condyle::scaling::{Factor, Plan, ScaleError, Scaled, fit};
@@ -83,7 +84,7 @@ fn recording(
 ) -> Recording {
     let places = places(model, stored);
     let positions = (0..frames).flat_map(|_| places.clone());
-    let positions = positions.map(|p| Some(p.to_array().map(|x| x + noise())));
+    let positions = positions.map(|p| p.to_array().map(|x| x + noise()).into());
     Recording {
         labels: model.markers().iter().map(|m| m.name.clone()).collect(),
         rate: 100.0,
@@ -265,7 +266,7 @@ fn groups_are_drawn_to_the_body_as_far_as_the_spreads_say() {
 fn a_marker_that_means_something_else_counts_less() {
     let (model, mut trial) = rods();
     // The marker at 0.25 of the first rod was stuck on 0.3 m too far out.
-    trial.positions[1] = Some([1.2 * 0.25 + 0.3, 0.0, 0.0]);
+    trial.positions[1] = [1.2 * 0.25 + 0.3, 0.0, 0.0].into();
     let plan = Plan { group_spread: 100.0, ..Plan::default() };
     let scaled = fit(&model, &trial, &plan).expect("rods");
     // Least squares in closed form, with weights (30 mm/e)^2 beyond 30 mm that are found by turns.
@@ -297,12 +298,12 @@ fn markers_that_move_are_left_out() {
     trial.times = (0..60).map(f64::from).collect();
     for frame in 0..60 {
         // The first sways by 30 mm, the second is wrong in one frame.
-        if let Some(p) = &mut trial.positions[frame * one.len()] {
+        if let Some(p) = trial.positions[frame * one.len()].position_mut() {
             p[2] += [-0.03, 0.0, 0.03][frame % 3];
         }
     }
-    trial.positions[1] = Some([3.0, 3.0, 3.0]);
-    trial.positions[one.len() + 2] = None;
+    trial.positions[1] = [3.0, 3.0, 3.0].into();
+    trial.positions[one.len() + 2] = Observed::MISSING;
     // So weak a prior pulls by a hundred-millionth of what the markers do.
     let plan = Plan { group_spread: 100.0, ..Plan::default() };
     let scaled = fit(&model, &trial, &plan).expect("rods");
@@ -334,7 +335,12 @@ fn what_cannot_be_scaled_is_refused() {
 #[test]
 fn a_wrong_unit_ends_at_a_bound_and_is_said() {
     let (model, mut trial) = rods();
-    trial.positions.iter_mut().flatten().flatten().for_each(|x| *x *= 1000.0);
+    trial
+        .positions
+        .iter_mut()
+        .filter_map(Observed::position_mut)
+        .flatten()
+        .for_each(|x| *x *= 1000.0);
     let scaled = fit(&model, &trial, &Plan::default()).expect("rods");
     assert!((scaled.body.factor - 2.0).abs() < 1e-9, "{:?}", scaled.body);
     assert!(scaled.warnings.iter().any(|w| w.code == "scale/bound"), "{:?}", scaled.warnings);

@@ -7,8 +7,8 @@ use crate::failure::{Failure, warn_about, warned};
 use crate::motion_format::MotionFormat;
 use crate::output;
 use clap::{Args, ValueEnum};
-use condyle::formats::{AngleUnit, LengthUnit, Recording, Table, csv, document, glb, sto, trc};
-use condyle::{Mode, Model, Motion, Pose, Program, open, scene, shipped};
+use condyle::formats::{AngleUnit, Table, csv, document, glb, sto, trc};
+use condyle::{Mode, Model, Motion, Program, open, scene, shipped};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -208,7 +208,7 @@ impl Convert {
     fn recording_as(&self, target: Target) -> Result<Vec<u8>, Failure> {
         let recording = warned(&self.input, open::recording(&self.input)?);
         if target == Target::Csv {
-            return encoded(csv::write(&marker_table(&recording)));
+            return encoded(csv::write(&recording.to_table()));
         }
         let name = self.output.file_name().unwrap_or_default().to_string_lossy();
         encoded(trc::write(&recording, &name))
@@ -228,25 +228,8 @@ impl Convert {
                 self.input.display()
             )));
         }
-        let program = Program::compile(model);
-        let mut pose = Pose::new(&program);
-        let mut positions = Vec::with_capacity(motion.frames.len() * model.markers().len());
-        for frame in &motion.frames {
-            program
-                .evaluate(frame, self.mode(), &mut pose)
-                .map_err(|error| Failure::new(error.to_string()))?;
-            for marker in model.markers() {
-                let point = (pose.frame(marker.segment) * marker.point).to_array();
-                positions.push(point.iter().all(|x| x.is_finite()).then_some(point));
-            }
-        }
-        let recording = Recording {
-            labels: model.markers().iter().map(|m| m.name.clone()).collect(),
-            rate: rate(&motion.times),
-            times: motion.times.clone(),
-            positions,
-            units: LengthUnit::Millimetre,
-        };
+        let recording = motion.virtual_markers(model, self.mode());
+        let recording = recording.map_err(|error| Failure::new(error.to_string()))?;
         let name = self.output.file_name().unwrap_or_default().to_string_lossy();
         encoded(trc::write(&recording, &name))
     }
@@ -270,27 +253,4 @@ fn rewritten(path: &Path, mut table: Table, target: Target) -> Result<Vec<u8>, F
         table.angle_unit = AngleUnit::Radians;
     }
     encoded(if target == Target::Csv { csv::write(&table) } else { sto::write(&table) })
-}
-
-/// Three columns for each marker, in metres; blank where it was not seen.
-fn marker_table(recording: &Recording) -> Table {
-    let axes = ["x", "y", "z"];
-    let columns = recording.labels.iter().flat_map(|l| axes.map(|axis| format!("{l}.{axis}")));
-    Table {
-        columns: columns.collect(),
-        times: recording.times.clone(),
-        values: recording.positions.iter().flat_map(|p| p.unwrap_or([f64::NAN; 3])).collect(),
-        ..Table::default()
-    }
-}
-
-/// Frames per second of evenly spaced times, rounded to what such rates are given with.
-fn rate(times: &[f64]) -> f64 {
-    match times {
-        [first, .., last] if last > first => {
-            let rate = (times.len() - 1) as f64 / (last - first);
-            (rate * 1e6).round() / 1e6
-        }
-        _ => 100.0,
-    }
 }

@@ -1,8 +1,8 @@
 //! The lines up to `endheader`.
 
-use crate::table::AngleUnit;
 use crate::text::{Line, number};
 use condyle_diagnostics::{Diagnostic, Error, Place, Warnings};
+use condyle_motion::AngleUnit;
 
 /// Keys that SIMM wrote with a space instead of `=`.
 const SIMM_KEYS: [&str; 4] = ["datacolumns", "datarows", "otherdata", "range"];

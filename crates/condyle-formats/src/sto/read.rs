@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 
 use super::header;
-use crate::table::Table;
 use crate::text::{Line, check_size, last_line, lines, number, read_decoded};
 use condyle_diagnostics::{Diagnostic, Error, Place, Read, Warnings};
+use condyle_motion::Table;
 
 /// How cells are told apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

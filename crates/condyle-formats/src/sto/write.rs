@@ -1,8 +1,8 @@
 //! Writing: the header OpenSim writes and reads, version 1.
 
-use crate::table::{AngleUnit, Table};
 use crate::text::{decimal, plain};
 use condyle_diagnostics::Error;
+use condyle_motion::{AngleUnit, Table};
 
 /// Header keys that the writer sets itself, or that would be wrong for what it writes.
 const OWN_KEYS: [&str; 11] = [

@@ -1,8 +1,8 @@
 //! The lines before the first row: rate, counts, unit and labels.
 
-use crate::recording::LengthUnit;
 use crate::text::{Line, number};
 use condyle_diagnostics::{Diagnostic, Error, Place, Warnings};
+use condyle_motion::LengthUnit;
 
 /// How cells are told apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

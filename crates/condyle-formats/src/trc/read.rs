@@ -1,9 +1,9 @@
 //! Reading: rows, units and times.
 
 use super::header::{self, Delimiter, Header};
-use crate::recording::{LengthUnit, Recording};
 use crate::text::{Line, check_size, last_line, lines, number, read_decoded};
 use condyle_diagnostics::{Diagnostic, Error, Place, Read, Warnings};
+use condyle_motion::{LengthUnit, Observed, Recording};
 
 /// Choices that a TRC file itself cannot make.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -106,7 +106,7 @@ struct Rows<'h> {
     /// Cells of markers without a name, after all others; found in the first row.
     nameless: Option<usize>,
     times: Vec<f64>,
-    positions: Vec<Option<[f64; 3]>>,
+    positions: Vec<Observed>,
 }
 
 impl Rows<'_> {
@@ -172,7 +172,7 @@ impl Rows<'_> {
         self.times.push(time);
         for marker in 0..markers {
             let position = self.position(line, &cells, marker, warnings)?;
-            self.positions.push(position);
+            self.positions.push(position.into());
         }
         Ok(())
     }
@@ -301,7 +301,7 @@ fn convert(
         warnings.push(Diagnostic::warning("trc/unit", message).at(header));
         unit
     });
-    for position in recording.positions.iter_mut().flatten() {
+    for position in recording.positions.iter_mut().filter_map(Observed::position_mut) {
         *position = position.map(|x| unit.to_metres(x));
     }
     recording.units = unit;

@@ -1,8 +1,8 @@
 //! Writing: the plainest dialect, which every reader takes.
 
-use crate::recording::Recording;
 use crate::text::{decimal, plain};
 use condyle_diagnostics::Error;
+use condyle_motion::Recording;
 
 /// Writes a recording in its own unit, tab-separated; a marker not seen leaves three blank cells.
 ///
@@ -19,7 +19,7 @@ use condyle_diagnostics::Error;
 ///     labels: vec!["LASI".into()],
 ///     rate: 100.0,
 ///     times: vec![0.0],
-///     positions: vec![Some([0.125, 0.9, -0.12])],
+///     positions: vec![[0.125, 0.9, -0.12].into()],
 ///     units: LengthUnit::Millimetre,
 /// };
 /// let text = trc::write(&recording, "static.trc")?;
@@ -57,11 +57,11 @@ pub fn write(recording: &Recording, name: &str) -> Result<String, Error> {
     for (frame, time) in recording.times.iter().enumerate() {
         text.push_str(&format!("{}\t{}", frame + 1, decimal(*time)));
         for position in recording.frame(frame) {
-            match position {
+            match position.position() {
                 Some(position) => {
                     for x in position {
                         text.push('\t');
-                        text.push_str(&decimal(recording.units.from_metres(*x)));
+                        text.push_str(&decimal(recording.units.from_metres(x)));
                     }
                 }
                 None => text.push_str("\t\t\t"),

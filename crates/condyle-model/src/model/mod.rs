@@ -193,6 +193,22 @@ impl Model {
         self.tangent_offsets[id.index()] as usize..self.tangent_offsets[id.index() + 1] as usize
     }
 
+    /// The value of a coordinate of one number among all stored ones; of an orientation its x.
+    ///
+    /// # Panics
+    /// If `stored` has fewer than [`Model::stored_len`] numbers.
+    pub fn value(&self, stored: &[f64], id: CoordinateId) -> f64 {
+        stored[self.stored_offsets[id.index()] as usize]
+    }
+
+    /// The same, to be changed in place.
+    ///
+    /// # Panics
+    /// If `stored` has fewer than [`Model::stored_len`] numbers.
+    pub fn value_mut<'s>(&self, stored: &'s mut [f64], id: CoordinateId) -> &'s mut f64 {
+        &mut stored[self.stored_offsets[id.index()] as usize]
+    }
+
     /// The stored numbers of all coordinates at their defaults.
     pub fn defaults(&self) -> Vec<f64> {
         self.coordinates.iter().flat_map(|c| c.default[..c.kind.stored()].iter().copied()).collect()

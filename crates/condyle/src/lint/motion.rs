@@ -6,13 +6,14 @@
 
 use super::closure::{Gap, gaps};
 use super::{amount, finding, length, listed, real_range, rounded, tolerance};
-use crate::motion::{Motion, cells};
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
-use condyle_formats::{AngleUnit, Table, coordinate_name};
 use condyle_math::Quat;
 use condyle_model::component::Source;
 use condyle_model::evaluate::ClosureRows;
 use condyle_model::{CoordinateId, CoordinateKind, Mode, Model, Pose, Program};
+use condyle_motion::Motion;
+use condyle_motion::columns::{cells, coordinate_name};
+use condyle_motion::{AngleUnit, Table};
 use std::f64::consts::{PI, TAU};
 
 /// Turning by more than this in one frame is no movement of a body.

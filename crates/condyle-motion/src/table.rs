@@ -1,5 +1,7 @@
 //! Tables over time: motions, forces, errors, whatever file they came from.
 
+use crate::columns::coordinate_name;
+
 /// In what a table's rotational columns are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum AngleUnit {
@@ -18,7 +20,7 @@ pub enum AngleUnit {
 /// [`angle_unit`](Self::angle_unit) says what they are in and the caller converts them.
 ///
 /// ```
-/// use condyle_formats::{AngleUnit, Table};
+/// use condyle_motion::{AngleUnit, Table};
 /// let table = Table {
 ///     name: "walk".into(),
 ///     columns: vec!["/jointset/knee_r/knee_angle_r/value".into(), "pelvis_tx".into()],
@@ -101,7 +103,8 @@ impl Table {
     }
 
     /// Why the fields do not fit together, if they do not.
-    pub(crate) fn mismatch(&self) -> Option<String> {
+    #[must_use]
+    pub fn mismatch(&self) -> Option<String> {
         let (rows, columns) = (self.rows(), self.columns.len());
         (rows.checked_mul(columns) != Some(self.values.len())).then(|| {
             format!(
@@ -111,26 +114,6 @@ impl Table {
             )
         })
     }
-}
-
-/// The coordinate whose value a column holds: the column's name, or what stands in its path
-/// before `/value`. None for a path that holds something else, such as a speed.
-///
-/// ```
-/// use condyle_formats::coordinate_name;
-/// assert_eq!(coordinate_name("/jointset/knee_r/knee_angle_r/value"), Some("knee_angle_r"));
-/// assert_eq!(coordinate_name("knee_r/knee_angle_r/value"), Some("knee_angle_r"));
-/// assert_eq!(coordinate_name("/jointset/knee_r/knee_angle_r|value"), Some("knee_angle_r"));
-/// assert_eq!(coordinate_name("knee_angle_r"), Some("knee_angle_r"));
-/// assert_eq!(coordinate_name("/jointset/knee_r/knee_angle_r/speed"), None);
-/// ```
-#[must_use]
-pub fn coordinate_name(column: &str) -> Option<&str> {
-    if !column.contains(['/', '|']) {
-        return Some(column);
-    }
-    let path = column.strip_suffix("/value").or_else(|| column.strip_suffix("|value"))?;
-    path.rsplit('/').next().filter(|name| !name.is_empty())
 }
 
 #[cfg(test)]

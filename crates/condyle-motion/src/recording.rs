@@ -1,106 +1,64 @@
 //! Marker recordings, whatever file they came from.
 
-/// A unit of length at the border of a file; inside, lengths are metres.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum LengthUnit {
-    /// `m`
-    #[default]
-    Metre,
-    /// `cm`
-    Centimetre,
-    /// `mm`
-    Millimetre,
-    /// `in`, 0.0254 m
-    Inch,
-    /// `ft`, 0.3048 m
-    Foot,
+use crate::LengthUnit;
+
+/// Where a marker was observed in one frame, in metres, or that it was not: 24 bytes.
+///
+/// ```
+/// use condyle_motion::Observed;
+/// assert_eq!(Observed::from([0.0, 1.0, 0.1]).position(), Some([0.0, 1.0, 0.1]));
+/// assert_eq!(Observed::MISSING.position(), None);
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct Observed([f64; 3]);
+
+impl Observed {
+    /// Not seen.
+    pub const MISSING: Self = Self([f64::NAN; 3]);
+
+    /// The position; `None` where the marker was not seen.
+    #[must_use]
+    pub fn position(self) -> Option<[f64; 3]> {
+        // A missing marker is stored as NaN, so that the option costs no bytes.
+        (!self.0[0].is_nan()).then_some(self.0)
+    }
+
+    /// The position, to be changed in place; `None` where the marker was not seen.
+    pub fn position_mut(&mut self) -> Option<&mut [f64; 3]> {
+        (!self.0[0].is_nan()).then_some(&mut self.0)
+    }
 }
 
-impl LengthUnit {
-    /// The unit of this name, in any of the spellings met in files.
-    ///
-    /// ```
-    /// use condyle_formats::LengthUnit;
-    /// assert_eq!(LengthUnit::from_name(" MM "), Some(LengthUnit::Millimetre));
-    /// assert_eq!(LengthUnit::from_name("meters"), Some(LengthUnit::Metre));
-    /// assert_eq!(LengthUnit::from_name("furlong"), None);
-    /// ```
-    #[must_use]
-    pub fn from_name(name: &str) -> Option<Self> {
-        // C3D cuts units to four letters: "mete".
-        match name.trim().trim_end_matches('.').to_ascii_lowercase().as_str() {
-            "m" | "mete" | "meter" | "meters" | "metre" | "metres" => Some(Self::Metre),
-            "cm" | "centimeter" | "centimeters" | "centimetre" | "centimetres" => {
-                Some(Self::Centimetre)
-            }
-            "mm" | "millimeter" | "millimeters" | "millimetre" | "millimetres" => {
-                Some(Self::Millimetre)
-            }
-            "in" | "inch" | "inches" | "\"" => Some(Self::Inch),
-            "ft" | "foot" | "feet" => Some(Self::Foot),
-            _ => None,
-        }
+/// A position with a part that is not a number counts as missing.
+impl From<[f64; 3]> for Observed {
+    fn from(position: [f64; 3]) -> Self {
+        if position.iter().any(|x| x.is_nan()) { Self::MISSING } else { Self(position) }
     }
+}
 
-    /// The short name, as files write it.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Metre => "m",
-            Self::Centimetre => "cm",
-            Self::Millimetre => "mm",
-            Self::Inch => "in",
-            Self::Foot => "ft",
-        }
+impl From<Option<[f64; 3]>> for Observed {
+    fn from(position: Option<[f64; 3]>) -> Self {
+        position.map_or(Self::MISSING, Self::from)
     }
+}
 
-    /// A length in this unit, in metres.
-    ///
-    /// ```
-    /// use condyle_formats::LengthUnit;
-    /// assert_eq!(LengthUnit::Millimetre.to_metres(125.0), 0.125);
-    /// assert_eq!(LengthUnit::Inch.to_metres(10.0), 0.254);
-    /// ```
-    #[must_use]
-    pub fn to_metres(self, length: f64) -> f64 {
-        // Dividing by a whole number rounds once, multiplying by 0.001 twice.
-        match self {
-            Self::Metre => length,
-            Self::Centimetre => length / 100.0,
-            Self::Millimetre => length / 1000.0,
-            Self::Inch => length * 0.0254,
-            Self::Foot => length * 0.3048,
-        }
-    }
-
-    /// A length in metres, in this unit: of the neighbouring doubles that read back as the same
-    /// length the one with the shortest decimal, so that a file read and written keeps its digits.
-    #[must_use]
-    pub fn from_metres(self, length: f64) -> f64 {
-        let near = match self {
-            Self::Metre => return length,
-            Self::Centimetre => length * 100.0,
-            Self::Millimetre => length * 1000.0,
-            Self::Inch => length / 0.0254,
-            Self::Foot => length / 0.3048,
-        };
-        [near, near.next_up(), near.next_down()]
-            .into_iter()
-            .filter(|candidate| self.to_metres(*candidate) == length)
-            .min_by_key(|candidate| candidate.to_string().len())
-            .unwrap_or(near)
+impl PartialEq for Observed {
+    fn eq(&self, other: &Self) -> bool {
+        self.position() == other.position()
     }
 }
 
 /// Marker positions over time, in metres.
 ///
 /// ```
-/// use condyle_formats::{LengthUnit, Recording};
+/// use condyle_motion::{LengthUnit, Observed, Recording};
 /// let recording = Recording {
 ///     labels: vec!["LASI".into(), "RASI".into()],
 ///     rate: 100.0,
 ///     times: vec![0.0, 0.01],
-///     positions: vec![Some([0.0, 1.0, 0.1]), Some([0.0, 1.0, -0.1]), None, Some([0.1, 1.0, -0.1])],
+///     positions: [Some([0.0, 1.0, 0.1]), Some([0.0, 1.0, -0.1]), None, Some([0.1, 1.0, -0.1])]
+///         .map(Observed::from)
+///         .to_vec(),
 ///     units: LengthUnit::Millimetre,
 /// };
 /// assert_eq!(recording.position(1, 1), Some([0.1, 1.0, -0.1]));
@@ -115,8 +73,8 @@ pub struct Recording {
     pub rate: f64,
     /// Seconds, one per frame, never falling.
     pub times: Vec<f64>,
-    /// Row by row, one per frame and marker; none where the marker was not seen.
-    pub positions: Vec<Option<[f64; 3]>>,
+    /// Row by row, one per frame and marker.
+    pub positions: Vec<Observed>,
     /// The unit of the file it came from, and of the file it goes to.
     pub units: LengthUnit,
 }
@@ -152,12 +110,12 @@ impl Recording {
         if marker >= self.labels.len() {
             return None;
         }
-        self.frame(frame).get(marker).copied().flatten()
+        self.frame(frame).get(marker)?.position()
     }
 
     /// All markers of one frame, in metres; empty if there is no such frame.
     #[must_use]
-    pub fn frame(&self, frame: usize) -> &[Option<[f64; 3]>] {
+    pub fn frame(&self, frame: usize) -> &[Observed] {
         let width = self.labels.len();
         frame
             .checked_mul(width)
@@ -186,7 +144,7 @@ impl Recording {
     /// How many positions are missing.
     #[must_use]
     pub fn missing(&self) -> usize {
-        self.positions.iter().filter(|p| p.is_none()).count()
+        self.positions.iter().filter(|p| p.position().is_none()).count()
     }
 
     /// The usual size of a frame: the median, over at most 101 frames, of the longest side of
@@ -205,11 +163,16 @@ impl Recording {
     /// The largest absolute coordinate, in metres; 0 without markers.
     #[must_use]
     pub fn reach(&self) -> f64 {
-        self.positions.iter().flatten().flatten().fold(0.0, |most, x| x.abs().max(most))
+        self.positions
+            .iter()
+            .filter_map(|p| p.position())
+            .flatten()
+            .fold(0.0, |most: f64, x| x.abs().max(most))
     }
 
     /// Why the fields do not fit together, if they do not.
-    pub(crate) fn mismatch(&self) -> Option<String> {
+    #[must_use]
+    pub fn mismatch(&self) -> Option<String> {
         let (frames, labels) = (self.frames(), self.labels.len());
         (frames.checked_mul(labels) != Some(self.positions.len())).then(|| {
             format!(
@@ -222,10 +185,10 @@ impl Recording {
 }
 
 /// The longest side of the box around the markers of a frame; none for fewer than two.
-fn side_of_box(frame: &[Option<[f64; 3]>]) -> Option<f64> {
+fn side_of_box(frame: &[Observed]) -> Option<f64> {
     let mut seen = 0;
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for position in frame.iter().flatten() {
+    for position in frame.iter().filter_map(|p| p.position()) {
         seen += 1;
         for axis in 0..3 {
             low[axis] = low[axis].min(position[axis]);
@@ -246,7 +209,7 @@ mod tests {
             labels: (0..width).map(|i| format!("m{i}")).collect(),
             rate: 1.0,
             times: (0..rows.len()).map(|i| i as f64).collect(),
-            positions: rows.concat(),
+            positions: rows.concat().into_iter().map(Observed::from).collect(),
             units: LengthUnit::Metre,
         }
     }
@@ -269,24 +232,16 @@ mod tests {
     }
 
     #[test]
+    fn a_marker_place_takes_24_bytes() {
+        assert_eq!(size_of::<Observed>(), 24);
+        assert_eq!(Observed::from([0.0, f64::NAN, 0.0]), Observed::MISSING);
+    }
+
+    #[test]
     fn no_such_frame_or_marker() {
         let r = recording(&[&[Some([1.0; 3])], &[Some([2.0; 3])]]);
         assert_eq!(r.position(0, 1), None);
         assert_eq!(r.position(2, 0), None);
         assert!(r.frame(usize::MAX).is_empty());
-    }
-
-    #[test]
-    fn a_length_read_and_written_keeps_its_digits() {
-        for unit in [LengthUnit::Millimetre, LengthUnit::Centimetre, LengthUnit::Inch] {
-            for thousandths in (-50_000_i32..50_000).step_by(7) {
-                let written: f64 = format!("{thousandths}e-3").parse().unwrap();
-                let metres = unit.to_metres(written);
-                assert_eq!(unit.to_metres(unit.from_metres(metres)), metres);
-                if unit == LengthUnit::Millimetre {
-                    assert_eq!(unit.from_metres(metres), written);
-                }
-            }
-        }
     }
 }

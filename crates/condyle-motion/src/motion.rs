@@ -1,7 +1,8 @@
 //! The coordinates of a model over time, to and from tables.
 
+use crate::columns::{cells, columns, coordinate_name};
+use crate::{AngleUnit, Table};
 use condyle_diagnostics::{Diagnostic, listed};
-use condyle_formats::{AngleUnit, Table, coordinate_name};
 use condyle_model::{CoordinateId, CoordinateKind, Mode, Model, Pose, Program};
 
 /// Stored numbers of all coordinates of one model, frame by frame, in radians and metres.
@@ -13,52 +14,8 @@ pub struct Motion {
     pub frames: Vec<Vec<f64>>,
 }
 
-/// The names of the columns that hold a coordinate.
-pub fn columns(model: &Model, id: CoordinateId) -> Vec<String> {
-    let key = model.coordinate_key(id);
-    match model.coordinate(id).kind {
-        CoordinateKind::Orientation => {
-            ["qx", "qy", "qz", "qw"].iter().map(|part| format!("{key}.{part}")).collect()
-        }
-        _ => vec![key],
-    }
-}
-
-/// One stored number of a model, and the column of a table that holds it.
-pub(crate) struct Cell {
-    pub(crate) coordinate: CoordinateId,
-    /// Which of the coordinate's numbers it is.
-    pub(crate) part: usize,
-    /// Its position among all stored numbers.
-    pub(crate) place: usize,
-    /// The column; none where the table has none.
-    pub(crate) column: Option<usize>,
-    /// What the column's numbers are multiplied by.
-    pub(crate) factor: f64,
-}
-
-/// Where a table holds the numbers of a model, all of them in the model's order.
-pub(crate) fn cells(model: &Model, table: &Table) -> Vec<Cell> {
-    let mut cells = Vec::with_capacity(model.stored_len());
-    for id in model.coordinate_ids() {
-        let coordinate = model.coordinate(id);
-        let degrees =
-            table.angle_unit == AngleUnit::Degrees && coordinate.kind == CoordinateKind::Rotation;
-        let factor = if degrees { 1f64.to_radians() } else { 1.0 };
-        let start = model.stored_range(id).start;
-        let set = &model.joint_sets()[coordinate.joint_set.index()].name;
-        let path = format!("{set}/{}", coordinate.name);
-        let held = |column: &String| {
-            let bare = column.strip_suffix("/value").unwrap_or(column);
-            bare.trim_start_matches('/').ends_with(&path)
-        };
-        for (part, name) in columns(model, id).into_iter().enumerate() {
-            let column = table.column(&name).or_else(|| table.columns.iter().position(held));
-            cells.push(Cell { coordinate: id, part, place: start + part, column, factor });
-        }
-    }
-    cells
-}
+/// Cells of coordinates that hold no number.
+pub const BLANK: &str = "motion/blank";
 
 impl Motion {
     /// A motion from a table whose columns are named after coordinates.
@@ -117,7 +74,7 @@ impl Motion {
             .collect();
         if gaps > 0 {
             warnings.push(
-                Diagnostic::warning("motion/blank", format!("{gaps} cells hold no number"))
+                Diagnostic::warning(BLANK, format!("{gaps} cells hold no number"))
                     .with_help("the coordinates keep their defaults there"),
             );
         }

@@ -1,0 +1,128 @@
+//! Which columns of a table hold which coordinates.
+//!
+//! A column holds a coordinate if its name is the coordinate's key, or a path whose last parts are
+//! the joint set and the coordinate (`/jointset/knee_r/knee_angle_r/value`). Parts of a path are
+//! compared whole: `left_knee/angle` holds nothing of a joint set `knee`.
+
+use crate::{AngleUnit, Table};
+use condyle_model::{CoordinateId, CoordinateKind, Model};
+
+/// The coordinate whose value a column holds: the column's name, or what stands in its path
+/// before `/value`. None for a path that holds something else, such as a speed.
+///
+/// ```
+/// use condyle_motion::coordinate_name;
+/// assert_eq!(coordinate_name("/jointset/knee_r/knee_angle_r/value"), Some("knee_angle_r"));
+/// assert_eq!(coordinate_name("knee_r/knee_angle_r/value"), Some("knee_angle_r"));
+/// assert_eq!(coordinate_name("/jointset/knee_r/knee_angle_r|value"), Some("knee_angle_r"));
+/// assert_eq!(coordinate_name("knee_angle_r"), Some("knee_angle_r"));
+/// assert_eq!(coordinate_name("/jointset/knee_r/knee_angle_r/speed"), None);
+/// ```
+#[must_use]
+pub fn coordinate_name(column: &str) -> Option<&str> {
+    if !column.contains(['/', '|']) {
+        return Some(column);
+    }
+    let path = column.strip_suffix("/value").or_else(|| column.strip_suffix("|value"))?;
+    path.rsplit('/').next().filter(|name| !name.is_empty())
+}
+
+/// The names of the columns that hold a coordinate: one, or four of an orientation.
+pub fn columns(model: &Model, id: CoordinateId) -> Vec<String> {
+    parts(model, id).iter().map(|part| format!("{}{part}", model.coordinate_key(id))).collect()
+}
+
+/// What stands behind the key in the name of each column of a coordinate.
+fn parts(model: &Model, id: CoordinateId) -> &'static [&'static str] {
+    match model.coordinate(id).kind {
+        CoordinateKind::Orientation => &[".qx", ".qy", ".qz", ".qw"],
+        _ => &[""],
+    }
+}
+
+/// For each stored number of a coordinate, the column of a table that holds it.
+pub fn found_columns(model: &Model, id: CoordinateId, table: &Table) -> Vec<Option<usize>> {
+    let coordinate = model.coordinate(id);
+    let set = &model.joint_sets()[coordinate.joint_set.index()].name;
+    let by_path = |part: &str| {
+        let path = format!("/{set}/{}{part}", coordinate.name);
+        let holds = |column: &String| {
+            let bare = column.strip_suffix("/value").unwrap_or(column);
+            format!("/{}", bare.trim_start_matches('/')).ends_with(&path)
+        };
+        table.columns.iter().position(holds)
+    };
+    let names = columns(model, id);
+    let parts = parts(model, id).iter();
+    parts.zip(names).map(|(part, name)| table.column(&name).or_else(|| by_path(part))).collect()
+}
+
+/// One stored number of a model, and the column of a table that holds it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// The coordinate.
+    pub coordinate: CoordinateId,
+    /// Which of the coordinate's numbers it is.
+    pub part: usize,
+    /// Its position among all stored numbers.
+    pub place: usize,
+    /// The column; `None` where the table has none.
+    pub column: Option<usize>,
+    /// What the column's numbers are multiplied by.
+    pub factor: f64,
+}
+
+/// Where a table holds the numbers of a model, all of them in the model's order.
+pub fn cells(model: &Model, table: &Table) -> Vec<Cell> {
+    let mut cells = Vec::with_capacity(model.stored_len());
+    for coordinate in model.coordinate_ids() {
+        let rotation = model.coordinate(coordinate).kind == CoordinateKind::Rotation;
+        let degrees = table.angle_unit == AngleUnit::Degrees && rotation;
+        let factor = if degrees { 1f64.to_radians() } else { 1.0 };
+        let start = model.stored_range(coordinate).start;
+        for (part, column) in found_columns(model, coordinate, table).into_iter().enumerate() {
+            cells.push(Cell { coordinate, part, place: start + part, column, factor });
+        }
+    }
+    cells
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use condyle_math::Vec3;
+    use condyle_model::ModelBuilder;
+
+    #[test]
+    fn parts_of_a_path_are_compared_whole() {
+        let mut b = ModelBuilder::new("knees");
+        for name in ["knee", "left_knee"] {
+            let shank = b.segment(name, None);
+            b.hinge(name, shank, "angle", Vec3::Z);
+        }
+        let model = b.build().unwrap();
+        let found = |columns: &[&str]| -> Vec<Option<usize>> {
+            let columns = columns.iter().map(|&c| c.to_owned()).collect();
+            let table = Table { columns, ..Table::default() };
+            cells(&model, &table).iter().map(|cell| cell.column).collect()
+        };
+        // `left_knee/angle` ends in the letters of `knee/angle`, and filled both.
+        assert_eq!(found(&["left_knee/angle"]), [None, Some(0)]);
+        assert_eq!(found(&["/jointset/left_knee/angle/value"]), [None, Some(0)]);
+        assert_eq!(found(&["/jointset/left_knee/angle/value", "knee/angle"]), [Some(1), Some(0)]);
+    }
+
+    #[test]
+    fn the_four_numbers_of_an_orientation_have_columns_of_their_own() {
+        let mut b = ModelBuilder::new("hips");
+        for name in ["hip_r", "hip_l"] {
+            let thigh = b.segment(name, None);
+            b.ball_joint(name, thigh);
+        }
+        let model = b.build().unwrap();
+        let id = model.coordinate_ids().next().unwrap();
+        let columns = ["qw", "qx", "qy", "qz"].map(|q| format!("/jointset/hip_r/orientation.{q}"));
+        let table = Table { columns: columns.to_vec(), ..Table::default() };
+        assert_eq!(found_columns(&model, id, &table), [Some(1), Some(2), Some(3), Some(0)]);
+    }
+}

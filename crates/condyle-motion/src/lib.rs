@@ -1,0 +1,28 @@
+//! Values of a body over time, whatever file they came from and wherever they go.
+//!
+//! | type | what |
+//! | --- | --- |
+//! | [`Recording`] | marker positions, frame by frame |
+//! | [`Table`] | columns of numbers by name, as a file has them: a motion of no stated model |
+//! | [`Motion`] | the coordinates of one model, frame by frame |
+//! | [`Posture`] | the coordinates of one model in one moment, set and read by coordinate |
+//!
+//! Inside, lengths are metres, angles radians, times seconds; what a file says otherwise is kept as
+//! [`LengthUnit`] and [`AngleUnit`]. [`columns`] ties columns to coordinates, [`difference`] compares two motions.
+
+pub mod columns;
+pub mod difference;
+mod length_unit;
+mod motion;
+mod posture;
+mod recording;
+mod sample;
+mod table;
+mod virtual_markers;
+
+pub use length_unit::LengthUnit;
+pub use motion::{BLANK, Motion};
+pub use posture::Posture;
+pub use recording::{Gap, Observed, Recording};
+pub use sample::{Between, between};
+pub use table::{AngleUnit, Table};
