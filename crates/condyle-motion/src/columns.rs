@@ -11,7 +11,7 @@ use condyle_model::{CoordinateId, CoordinateKind, Model};
 /// before `/value`. None for a path that holds something else, such as a speed.
 ///
 /// ```
-/// use condyle_motion::coordinate_name;
+/// use condyle_motion::columns::coordinate_name;
 /// assert_eq!(coordinate_name("/jointset/knee_r/knee_angle_r/value"), Some("knee_angle_r"));
 /// assert_eq!(coordinate_name("knee_r/knee_angle_r/value"), Some("knee_angle_r"));
 /// assert_eq!(coordinate_name("/jointset/knee_r/knee_angle_r|value"), Some("knee_angle_r"));

@@ -49,8 +49,6 @@
 //! Files are opened by [`open`], models that come along are in [`shipped`], motions are tied to a
 //! model by [`motion`], animated scenes made by [`scene`]. The `condyle` command is these calls and a printer.
 
-pub mod figure;
-pub mod lint;
 pub mod matching;
 pub mod open;
 pub mod scaling;
@@ -58,6 +56,7 @@ pub mod scene;
 pub mod shipped;
 pub mod tracking;
 
+pub use condyle_check as check;
 pub use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Subject};
 pub use condyle_formats as formats;
 pub use condyle_math as math;

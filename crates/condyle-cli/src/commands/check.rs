@@ -4,10 +4,10 @@ use super::Outcome;
 use crate::failure::Failure;
 use crate::output::{self, columns};
 use clap::Args;
-use condyle::lint;
-use condyle::lint::motion::MotionCheck;
+
+use condyle::check::motion::MotionCheck;
 use condyle::open::{Cause, OpenError};
-use condyle::{CoordinateKind, Diagnostic, Model, Severity, Subject, open};
+use condyle::{CoordinateKind, Diagnostic, Model, Severity, Subject, check, open};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -30,19 +30,19 @@ impl Check {
             Err(error) => return self.contradictory(error),
         };
         let model = &read.value;
-        let mut findings = lint::check(model, &read.warnings);
+        let mut findings = check::check(model, &read.warnings);
         let mut motion = None;
         if let Some(path) = &self.motion {
             let table = open::table(path)?;
-            let mut check = lint::motion::check(model, &table.value);
-            check.findings.splice(0..0, table.warnings);
-            motion = Some(check);
+            let mut checked = check::motion::check(model, &table.value);
+            checked.findings.splice(0..0, table.warnings);
+            motion = Some(checked);
         }
         if self.json {
             if let Some(motion) = &motion {
                 findings.extend(motion.findings.iter().cloned());
             }
-            let broken = findings.iter().any(lint::counts);
+            let broken = findings.iter().any(check::counts);
             output::print_json(&json!({
                 "model": model.name(),
                 "findings": findings.iter().map(finding_json).collect::<Vec<_>>(),
@@ -52,7 +52,7 @@ impl Check {
         }
         let mut text = head(&self.model.display().to_string(), &findings);
         grouped(&mut text, &findings);
-        let mut broken = findings.iter().any(lint::counts);
+        let mut broken = findings.iter().any(check::counts);
         if let (Some(motion), Some(path)) = (&motion, &self.motion) {
             text.push('\n');
             motion_text(&mut text, &path.display().to_string(), model, motion);
@@ -163,7 +163,7 @@ fn motion_json(model: &Model, motion: &MotionCheck) -> Value {
         outside[o.coordinate.index()] = Some(o);
     }
     let outside = |id: condyle::CoordinateId| outside[id.index()];
-    let violation = |v: &lint::motion::Violation| {
+    let violation = |v: &check::motion::Violation| {
         json!({
             "coordinate": key(v.coordinate),
             "frame": v.frame,

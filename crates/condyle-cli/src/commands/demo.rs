@@ -1,15 +1,17 @@
 //! `condyle demo`: the whole story on a recording made from a known motion.
 
+mod figure;
+
 use super::Outcome;
 use crate::failure::Failure;
 use crate::motion_format::MotionFormat;
 use crate::output;
 use crate::progress::frames_bar;
 use clap::Args;
-use condyle::figure::{Flaws, record, walk, walker};
 use condyle::formats::{Recording, trc};
 use condyle::tracking::{Plan, Tracking, track};
 use condyle::{CoordinateKind, Mode, Model, Motion, Pose, Program};
+use figure::{Flaws, record, walk, walker};
 use serde_json::json;
 use std::path::PathBuf;
 

@@ -12,7 +12,7 @@ mod scaling;
 mod segment;
 
 pub use builder::ModelBuilder;
-pub use check::{AXIS_LENGTH, CROSSING_RANGE, DEFAULT_OUTSIDE_RANGE};
+pub use check::{AXIS_LENGTH, CROSSING_RANGE, DEFAULT_OUTSIDE_RANGE, LOOKS_LIKE_DEGREES};
 pub use closure::{Closure, Condition};
 pub use coordinate::{Coordinate, CoordinateKind};
 pub use scaling::SizeGroup;

@@ -13,8 +13,8 @@
 //!   has `_l` for `_r` ([`Mirror`]).
 //! - [`Draws`] are the same in every run.
 
+use condyle::check;
 use condyle::formats::document;
-use condyle::lint;
 use condyle::math::{Affine, EulerOrder, Mat3, Vec3};
 use condyle::{Coordinate, Mode, Model, Pose, Program, SegmentId, shipped};
 
@@ -150,7 +150,7 @@ impl Figure {
     /// Asserts that the lint finds nothing.
     #[track_caller]
     pub(crate) fn assert_unremarked(&self) {
-        assert_eq!(lint::check(&self.model, &[]), []);
+        assert_eq!(check::check(&self.model, &[]), []);
     }
 
     /// Asserts that every coordinate names the source of its numbers.

@@ -3,7 +3,7 @@
 use crate::figure::{Draws, Figure, apart};
 use condyle::math::{Affine, Quat};
 use condyle::{Mode, Model, Pose};
-use condyle::{Severity, lint};
+use condyle::{Severity, check};
 
 /// Stored numbers inside all ranges; the pelvis within half a turn and half a metre.
 fn inside(model: &Model, draws: &mut Draws) -> Vec<f64> {
@@ -19,7 +19,7 @@ fn inside(model: &Model, draws: &mut Draws) -> Vec<f64> {
 #[test]
 fn nothing_is_wrong_with_it() {
     let model = Figure::shipped("human").model;
-    let said: Vec<_> = lint::check(&model, &[])
+    let said: Vec<_> = check::check(&model, &[])
         .into_iter()
         .filter(|finding| finding.severity > Severity::Note)
         .collect();

@@ -29,7 +29,7 @@ mod joint_graph;
 use crate::xml::{Element, XmlDocument};
 use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Warnings};
 use condyle_math::Vec3;
-use condyle_model::model::AXIS_LENGTH;
+use condyle_model::model::{AXIS_LENGTH, LOOKS_LIKE_DEGREES};
 use condyle_model::{CoordinateKind, Model, ModelBuilder, SegmentId};
 use frame::Frames;
 
@@ -157,9 +157,6 @@ fn at_model(error: Error, line: Place) -> Error {
     Error::of(located).unwrap_or_else(unsaid).contradiction()
 }
 
-/// The range of a coordinate looks like degrees where radians are meant.
-pub const DEGREES: &str = "osim/degrees";
-
 /// Angles in a model are radians: a range of several turns that is at most 360 was meant in degrees.
 fn warn_of_degrees(model: &Model, element: Element<'_>, warnings: &mut Warnings) {
     let turns = 4.0 * std::f64::consts::PI..=360.0;
@@ -175,7 +172,7 @@ fn warn_of_degrees(model: &Model, element: Element<'_>, warnings: &mut Warnings)
         let message = format!("the range of `{}` reaches {most} radians", coordinate.name);
         let place = here.unwrap_or(element).place();
         warnings.push(
-            Diagnostic::warning(DEGREES, message)
+            Diagnostic::warning(LOOKS_LIKE_DEGREES, message)
                 .at(place)
                 .with_help("is it in degrees? the file's angles must be in radians"),
         );

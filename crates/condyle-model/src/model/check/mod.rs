@@ -15,6 +15,8 @@ use std::collections::HashMap;
 pub const CROSSING_RANGE: &str = "model/crossing-range";
 /// A default value outside its range.
 pub const DEFAULT_OUTSIDE_RANGE: &str = "model/default-outside-range";
+/// A range in radians that looks like degrees.
+pub const LOOKS_LIKE_DEGREES: &str = "model/degrees";
 /// An axis whose length is not 1.
 pub const AXIS_LENGTH: &str = "model/axis-length";
 

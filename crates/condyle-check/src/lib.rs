@@ -38,13 +38,12 @@ mod rotation;
 mod symmetry;
 
 use condyle_diagnostics::{Diagnostic, Severity, Subject, listed};
-use condyle_formats::opensim::model::DEGREES;
-use condyle_model::model::{CROSSING_RANGE, DEFAULT_OUTSIDE_RANGE};
+use condyle_model::model::{CROSSING_RANGE, DEFAULT_OUTSIDE_RANGE, LOOKS_LIKE_DEGREES};
 use condyle_model::{CoordinateId, CoordinateKind, Mode, Model, Pose, Program};
 use reach::Reach;
 
 /// Codes of readers whose findings a rule of this family repeats, with names and numbers.
-const REPEATED: [&str; 3] = [CROSSING_RANGE, DEFAULT_OUTSIDE_RANGE, DEGREES];
+const REPEATED: [&str; 3] = [CROSSING_RANGE, DEFAULT_OUTSIDE_RANGE, LOOKS_LIKE_DEGREES];
 
 fn finding(
     severity: Severity,
@@ -64,12 +63,13 @@ pub fn counts(finding: &Diagnostic) -> bool {
 /// All findings about a model, and what its reader wondered about; the worst first.
 ///
 /// ```
-/// use condyle::{ModelBuilder, Range, lint, math::Vec3};
+/// use condyle_math::Vec3;
+/// use condyle_model::{ModelBuilder, Range};
 /// let mut b = ModelBuilder::new("arm");
 /// let forearm = b.segment("forearm", None);
 /// let (_, flexion) = b.hinge("elbow", forearm, "flexion", Vec3::Z);
 /// b.coordinate_mut(flexion).range = Range::new(0.0, 140.0);
-/// let findings = lint::check(&b.build().unwrap(), &[]);
+/// let findings = condyle_check::check(&b.build().unwrap(), &[]);
 /// assert_eq!(findings[0].code, "lint/degrees");
 /// ```
 pub fn check(model: &Model, warnings: &[Diagnostic]) -> Vec<Diagnostic> {

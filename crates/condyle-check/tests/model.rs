@@ -1,14 +1,15 @@
 //! Each rule with a model that breaks it and nothing else, and one beside it that is sound.
 
-use condyle::math::function::{Function, PiecewiseLinear, SimmSpline};
-use condyle::math::{Affine, Vec3};
-use condyle::model::component::{
+use condyle_check as lint;
+use condyle_diagnostics::{Diagnostic, Severity};
+use condyle_math::function::{Function, PiecewiseLinear, SimmSpline};
+use condyle_math::{Affine, Vec3};
+use condyle_model::component::{
     Component, Contact, ContactPair, Gliding, JointCone, Source, Swinging,
 };
-use condyle::model::model::{Closure, Condition};
-use condyle::model::{Cone, ConePoint, Projection};
-use condyle::{CoordinateKind, Model, ModelBuilder, Range};
-use condyle::{Diagnostic, Severity, lint};
+use condyle_model::model::{Closure, Condition};
+use condyle_model::{Cone, ConePoint, Projection};
+use condyle_model::{CoordinateKind, Model, ModelBuilder, Range};
 
 /// What is found in a model that its builder accepts.
 fn found(builder: ModelBuilder) -> Vec<Diagnostic> {
@@ -109,7 +110,7 @@ fn patella(upper: f64) -> ModelBuilder {
     // A straight line, so that its slope outside is known: 30 mm per radian.
     let line = knots.iter().map(|x| 0.03 * x).collect();
     let line = SimmSpline::new(knots, line).expect("knots");
-    let down = b.map(own, "glide", beta, condyle::math::function::Curve::SimmSpline(line).into());
+    let down = b.map(own, "glide", beta, condyle_math::function::Curve::SimmSpline(line).into());
     let slide = b.translate(own, "slide", down, Vec3::Y);
     b.output(own, kneecap, slide);
     b
@@ -132,7 +133,7 @@ fn functions_that_are_flat_need_no_knots() {
     let flexion = b.coordinate_at(0).expect("a coordinate");
     let set = b.coordinates()[0].joint_set;
     let flat = PiecewiseLinear::new(vec![-0.1, 0.1], vec![0.02, 0.02]).expect("knots");
-    b.map(set, "flat", flexion, condyle::math::function::Curve::PiecewiseLinear(flat).into());
+    b.map(set, "flat", flexion, condyle_math::function::Curve::PiecewiseLinear(flat).into());
     sound(b);
 }
 

@@ -5,14 +5,13 @@
 //! Motor Control of Human Movement*); the knee glides as in Yamaguchi & Zajac 1989 and carries a
 //! patella as in Rajagopal et al. 2016. Ranges, marker places and the walk are illustrative.
 
-use condyle_math::Vec3;
-use condyle_math::function::{Curve, Function, SimmSpline};
-use condyle_model::{
-    CoordinateId, CoordinateKind, JointSetId, Mode, Model, ModelBuilder, Program, Range, SegmentId,
-    Source,
+use condyle::math::Vec3;
+use condyle::math::function::{Curve, Function, SimmSpline};
+use condyle::model::{JointSetId, Source};
+use condyle::{
+    CoordinateId, CoordinateKind, Mode, Model, ModelBuilder, Motion, Observed, Program, Range,
+    Recording, SegmentId,
 };
-use condyle_motion::Motion;
-use condyle_motion::{Observed, Recording};
 use std::f64::consts::TAU;
 
 /// Stature of the figure in metres.
@@ -22,13 +21,7 @@ const STATURE: f64 = 1.75;
 const SIDES: [(&str, f64); 2] = [("r", 1.0), ("l", -1.0)];
 
 /// The figure: 15 segments, 35 coordinates of which two follow, 45 markers.
-///
-/// ```
-/// let model = condyle::figure::walker();
-/// let follow = model.coordinates().iter().filter(|c| c.follows.is_some()).count();
-/// assert_eq!((model.coordinates().len(), follow), (35, 2));
-/// ```
-pub fn walker() -> Model {
+pub(crate) fn walker() -> Model {
     let mut figure = Figure { b: ModelBuilder::new("walker") };
     let pelvis = figure.trunk();
     for (side, sign) in SIDES {
@@ -311,7 +304,7 @@ fn spline(knots: &[(f64, f64)]) -> Function {
 /// A walk: every coordinate a smooth function of time, within the ranges.
 ///
 /// `rate` in frames per second. One stride takes 1.1 s and 1.3 m.
-pub fn walk(model: &Model, frames: usize, rate: f64) -> Motion {
+pub(crate) fn walk(model: &Model, frames: usize, rate: f64) -> Motion {
     let mut motion = Motion::default();
     let program = Program::compile(model);
     for frame in 0..frames {
@@ -375,19 +368,19 @@ fn stride(name: &str, time: f64) -> f64 {
 
 /// What is wrong with a made recording.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Flaws {
+pub(crate) struct Flaws {
     /// Standard deviation of the noise on every marker coordinate, in metres.
-    pub noise: f64,
+    pub(crate) noise: f64,
     /// Share of the frames of each marker that fall into gaps.
-    pub missing: f64,
+    pub(crate) missing: f64,
     /// Two labels that stand for each other's marker, and the frames in which they do.
-    pub swap: Option<([String; 2], std::ops::Range<usize>)>,
+    pub(crate) swap: Option<([String; 2], std::ops::Range<usize>)>,
     /// Where the random numbers start.
-    pub seed: u64,
+    pub(crate) seed: u64,
 }
 
 /// The markers of a model along a motion, as a laboratory might have recorded them.
-pub fn record(model: &Model, motion: &Motion, flaws: &Flaws) -> Recording {
+pub(crate) fn record(model: &Model, motion: &Motion, flaws: &Flaws) -> Recording {
     let recording = motion.virtual_markers(model, Mode::Open);
     debug_assert!(recording.is_ok(), "a motion fits its model");
     let Ok(mut recording) = recording else { return Recording::default() };
@@ -451,6 +444,7 @@ impl Dice {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use condyle::Pose;
 
     #[test]
     fn the_walk_keeps_to_the_ranges_and_the_feet_to_the_ground() {
@@ -500,7 +494,7 @@ mod tests {
             .positions
             .iter()
             .zip(&noisy.positions)
-            .filter_map(|(a, b)| Some((*a.as_ref()?, *b.as_ref()?)))
+            .filter_map(|(a, b)| Some((a.position()?, b.position()?)))
             .map(|(a, b)| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>())
             .sum();
         // 200 · 45 · 3 draws: the deviation is known to half a percent.

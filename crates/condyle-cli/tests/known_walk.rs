@@ -1,10 +1,14 @@
 //! Tracking a recording whose motion is known.
 
 use condyle::Observed;
-use condyle::figure::{Flaws, record, walk, walker};
 use condyle::formats::Recording;
 use condyle::tracking::{Plan, Swap, Tracking, track};
 use condyle::{CoordinateKind, Model, Motion};
+
+#[path = "../src/commands/demo/figure.rs"]
+mod figure;
+
+use figure::{Flaws, record, walk, walker};
 
 fn run(model: &Model, recording: &Recording, plan: &Plan) -> Tracking {
     track(model, recording, plan, &mut |_, _| {}).unwrap()

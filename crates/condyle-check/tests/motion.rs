@@ -1,12 +1,12 @@
 //! Motions that break their model in one way each, with the frame and the amount.
 
-use condyle::formats::{AngleUnit, Table};
-use condyle::lint::motion::{MotionCheck, check};
-use condyle::math::function::Function;
-use condyle::math::{Quat, Vec3};
-use condyle::model::model::{Closure, Condition};
-use condyle::{CoordinateKind, Model, ModelBuilder, Range};
-use condyle::{Diagnostic, Severity};
+use condyle_check::motion::{MotionCheck, check};
+use condyle_diagnostics::{Diagnostic, Severity};
+use condyle_math::function::Function;
+use condyle_math::{Quat, Vec3};
+use condyle_model::model::{Closure, Condition};
+use condyle_model::{CoordinateKind, Model, ModelBuilder, Range};
+use condyle_motion::{AngleUnit, Table};
 
 /// A thigh on a slide, and a knee whose patella follows it by 10 mm per radian.
 fn leg() -> ModelBuilder {

@@ -146,8 +146,9 @@ fn source(model: &Model, id: CoordinateId) -> String {
 /// Compares every frame of a table with its model.
 ///
 /// ```
-/// use condyle::formats::{AngleUnit, Table};
-/// use condyle::{ModelBuilder, Range, lint, math::Vec3};
+/// use condyle_math::Vec3;
+/// use condyle_model::{ModelBuilder, Range};
+/// use condyle_motion::{AngleUnit, Table};
 /// let mut b = ModelBuilder::new("arm");
 /// let forearm = b.segment("forearm", None);
 /// let (_, flexion) = b.hinge("elbow", forearm, "flexion", Vec3::Z);
@@ -160,7 +161,7 @@ fn source(model: &Model, id: CoordinateId) -> String {
 ///     angle_unit: AngleUnit::Degrees,
 ///     ..Table::default()
 /// };
-/// let check = lint::motion::check(&model, &table);
+/// let check = condyle_check::motion::check(&model, &table);
 /// assert_eq!((check.violations.len(), check.violations[0].frame), (1, 1));
 /// assert!((check.violations[0].by.to_degrees() - 3.5).abs() < 1e-9);
 /// ```
