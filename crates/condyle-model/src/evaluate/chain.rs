@@ -94,6 +94,7 @@ pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
                 frame.linear = r * Mat3::rotation_about(axis, pose.turn(turn));
             }
             Step::Slide { axis, distance } => {
+                // A translation keeps the axes, so `along` is the same before and after it.
                 let along = r * axis.cast();
                 let inside = || Twist::translation(axis.cast());
                 recorder.motion(frame, inside, || Twist::translation(along));
@@ -162,6 +163,7 @@ fn rare_step<S: Scalar, R: Recorder<S>>(
             frame = frame * call.law.transform(&inputs[..call.inputs.len()]);
         }
         Step::Power { of, exponent } => {
+            // The rotation only, about the origin of the current frame.
             let rotation = pose.transforms[of as usize].linear;
             recorder.power(of, exponent, rotation, frame);
             frame.linear = r * power(rotation, exponent);

@@ -68,6 +68,7 @@ impl ClosureRows {
                     let [p, q] = at.map(|(s, point)| pose.frame(s) * point);
                     residuals.copy_from_slice(&(p - q).to_array());
                     let Some(jacobian) = jacobian else { continue };
+                    // A direction may move both points, hence the sum.
                     for ((segment, _), point, sign) in [(at[0], p, 1.0), (at[1], q, -1.0)] {
                         jacobian.visit_point(program, segment, point, |direction, velocity| {
                             for (i, v) in velocity.to_array().into_iter().enumerate() {
@@ -120,6 +121,7 @@ impl ClosureRows {
                 }
                 Condition::Coupling { follower, driver, function } => {
                     let value = |id: CoordinateId| pose.coordinate(model, id)[0];
+                    // Scalar coordinates, with one stored number and one direction each.
                     let (wanted, slope) = function.value_and_slope(value(*driver));
                     residuals[0] = value(*follower) - wanted;
                     if jacobian.is_some() {

@@ -109,6 +109,7 @@ pub(super) fn plan(
     tangents: usize,
     directions: &[(u32, u32)],
 ) -> DerivativePlan {
+    // One derivative from the start: slot 0, the constant 1.
     let mut plan = DerivativePlan {
         tangents,
         derivatives: 1,

@@ -84,6 +84,7 @@ impl Program {
                     run_balls(&rest[..count], pose);
                 }
                 Instruction::Chain { base, shift, first, end, output } => {
+                    // The initial `last` is the identity, right for a chain without a base as well.
                     let from = if base == last.0 {
                         last.1
                     } else if base == NO_BASE {

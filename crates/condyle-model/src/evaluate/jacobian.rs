@@ -26,6 +26,7 @@ pub struct Jacobian {
 impl Jacobian {
     /// Buffers for this program.
     pub fn new(program: &Program) -> Self {
+        // Slot 0 is the constant 1, the derivative of a coordinate in its own direction.
         let mut derivatives = vec![0.0; program.plan.derivatives];
         derivatives[0] = 1.0;
         Self {

@@ -34,6 +34,8 @@ impl Compiler<'_> {
                 if let Some(Source::Output(motion, _)) = segment.motion
                     && let Some(of) = self.shared[motion.index()]
                 {
+                    // The first path has exponent 1 everywhere, the second 1 - w for named
+                    // ancestors.
                     let named = compensate.ancestors.contains(&id);
                     let exponent = if named { 1.0 - take } else { 1.0 };
                     if exponent != 0.0 {

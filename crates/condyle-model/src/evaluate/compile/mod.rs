@@ -165,6 +165,8 @@ impl Compiler<'_> {
                 _ => continue,
             };
             for (k, source) in held.into_iter().enumerate() {
+                // A limit on the output of another one acts on the same coordinate, one level
+                // deeper.
                 let found = match source {
                     Source::Coordinate(id) => Some((id, 0)),
                     output => origin.get(&output).copied(),
@@ -185,6 +187,8 @@ impl Compiler<'_> {
         for id in self.model.coordinate_ids() {
             let Some(&(.., output)) = last.get(&id) else { continue };
             self.effective.insert(output, id);
+            // New registers for the requested numbers; readers of the coordinate are redirected
+            // there.
             let own = self.model.stored_range(id);
             let asked = self.program.code.scalars as u32;
             self.program.code.scalars += own.len();
@@ -197,6 +201,7 @@ impl Compiler<'_> {
     fn limits(&mut self) {
         for id in self.model.coordinate_ids() {
             let coordinate = self.model.coordinate(id);
+            // Followers have limit rows instead, and orientations have cones.
             let (lower, upper) = coordinate.range.bounds();
             let bounded = lower > f64::NEG_INFINITY || upper < f64::INFINITY;
             if bounded

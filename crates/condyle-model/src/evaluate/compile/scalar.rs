@@ -222,6 +222,7 @@ impl Compiler<'_> {
             .iter()
             .filter_map(|s| if let Scalar::Constant(v) = s { Some(*v) } else { None })
             .collect();
+        // All inputs are constant: folded.
         if constants.len() == inputs.len() {
             return Scalar::Constant(function.apply(&constants));
         }
