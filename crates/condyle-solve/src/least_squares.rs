@@ -12,9 +12,8 @@
 //! and accepts the step if the merit function F + μ(Σ|c| + Σ max(0, -g)) decreases. Bounds are
 //! satisfied exactly. The active set is the warm start of the next quadratic program, so a
 //! coordinate that stays at its bound costs no extra iterations. When the model predicts a decrease
-//! below
-//! `tolerance · F`, the last step is still tried, so that directions in which F is nearly flat
-//! converge to the minimum of the caller's prior.
+//! below `tolerance · F`, the last step is still tried, so that directions in which F is nearly
+//! flat converge to the minimum of the caller's prior.
 
 use crate::elimination::Elimination;
 use crate::quadratic::{QuadraticProgram, Status, Workspace};

@@ -17,10 +17,9 @@
 //! iteration around it.
 //!
 //! The solution is the unique feasible point that satisfies the KKT conditions: there are
-//! multipliers
-//! `z` (bounds), `y` (equalities), `w ≥ 0` (inequalities) with `H d + g = z + Cᵀ y + Gᵀ w`, where
-//! `z_i ≥ 0` at a lower bound, `z_i ≤ 0` at an upper bound and `z_i = 0` between them, and `w_k =
-//! 0` unless `G_k d = h_k`.
+//! multipliers `z` (bounds), `y` (equalities), `w ≥ 0` (inequalities) with
+//! `H d + g = z + Cᵀ y + Gᵀ w`, where `z_i ≥ 0` at a lower bound, `z_i ≤ 0` at an upper bound and
+//! `z_i = 0` between them, and `w_k = 0` unless `G_k d = h_k`.
 //!
 //! ```
 //! use condyle_solve::quadratic::{QuadraticProgram, Workspace};

@@ -5,13 +5,13 @@
 //! - **Bounds only** (or with inequalities that are not active at the solution): block principal
 //!   pivoting. For a guess of the active bounds, the free variables are solved for by one Cholesky
 //!   factorisation, and every variable that violates its bound or whose multiplier has the wrong
-//! sign   changes its state at once. When that stops making progress, one variable at a time is
-//! changed by   Murty's rule, which cannot cycle for a positive definite matrix (Júdice and Pires
-//! 1994). A   correct guess costs one factorisation of the free block.
-//! - **With rows**: the dual active-set method of Goldfarb and Idnani (1983), with bounds treated
-//! as   unit rows. It starts from the last active set, drops constraints whose multiplier has the
-//! wrong   sign, and adds violated constraints one by one; it also detects infeasibility. It is
-//! used as well   where pivoting stalls.
+//!   sign changes its state at once. When that stops making progress, one variable at a time is
+//!   changed by Murty's rule, which cannot cycle for a positive definite matrix (Júdice and Pires
+//!   1994). A correct guess costs one factorisation of the free block.
+//! - **With rows**: the dual active-set method of Goldfarb and Idnani (1983), with bounds as unit
+//!   rows. It starts from the last active set, drops constraints whose multiplier has the wrong
+//!   sign, and adds violated constraints one by one; it also detects infeasibility. It is used as
+//!   well where pivoting stalls.
 //!
 //! Both count their iterations and stop at a limit with [`Status::IterationLimit`].
 

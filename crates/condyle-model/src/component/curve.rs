@@ -12,8 +12,7 @@
 //! with u the normalised component of `up` perpendicular to f. The position has no kinks. The
 //! second derivative of the heading is discontinuous at the knots. The heading is undefined where
 //! c′ = 0 or where the tangent is along `up`: there R is built on an arbitrary perpendicular
-//! direction.
-//! `condyle check` finds such curves. Generator: by dual numbers.
+//! direction. `condyle check` finds such curves. Generator: by dual numbers.
 
 use super::{Law, Source};
 use condyle_math::function::SimmSpline;
