@@ -3,7 +3,7 @@
 use crate::{Mat3, Scalar, Vec3};
 use std::ops::Mul;
 
-/// An affine transform `p ↦ linear · p + translation`; rigid wherever `linear` is a rotation.
+/// An affine transform `p ↦ linear · p + translation`; rigid if `linear` is a rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Affine<S = f64> {
     /// The linear part: the axes of the child frame in the parent frame, as columns.
@@ -74,7 +74,8 @@ impl<S: Scalar> Affine<S> {
         Self::new(back, -(back * self.translation))
     }
 
-    /// The transform followed by a step along the child's own axes.
+    /// The transform with its origin moved by `step`, in metres along the axes of the child frame:
+    /// `self · from_translation(step)`.
     #[inline(always)]
     pub fn shifted(self, step: Vec3<S>) -> Self {
         Self::new(self.linear, self.translation + self.linear * step)

@@ -1,12 +1,12 @@
-//! Numbers that carry their derivatives.
+//! Dual numbers: values with their partial derivatives.
 
 use crate::Scalar;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A value with its partial derivatives with respect to `N` variables (forward mode).
 ///
-/// Arithmetic follows from (a + a'ε)(b + b'ε) = ab + (a'b + ab')ε with ε² = 0, so every smooth
-/// kernel of condyle yields exact derivatives when it is run on duals.
+/// Arithmetic follows from (a + a'ε)(b + b'ε) = ab + (a'b + ab')ε with ε² = 0, so a smooth kernel
+/// evaluated on duals returns its exact derivatives (to rounding).
 ///
 /// ```
 /// use condyle_math::{Dual, Scalar};
@@ -31,7 +31,7 @@ impl<const N: usize> Dual<N> {
         Self { value, partials: [0.0; N] }
     }
 
-    /// The variable number `index` (below `N`) at `value`.
+    /// The variable `index` (below `N`) at `value`: its own partial derivative is 1, the others 0.
     #[inline(always)]
     pub fn variable(value: f64, index: usize) -> Self {
         let mut partials = [0.0; N];
@@ -77,6 +77,7 @@ impl<const N: usize> Div for Dual<N> {
     #[inline(always)]
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
+        // (a/b)' = (a' - (a/b)·b') / b
         let mut partials = self.partials;
         for (p, q) in partials.iter_mut().zip(other.partials) {
             *p = (*p - value * q) / other.value;
@@ -116,6 +117,7 @@ impl<const N: usize> SubAssign for Dual<N> {
 impl<const N: usize> MulAssign for Dual<N> {
     #[inline(always)]
     fn mul_assign(&mut self, other: Self) {
+        // The partials first: they need the old value.
         for (p, q) in self.partials.iter_mut().zip(other.partials) {
             *p = *p * other.value + self.value * q;
         }
@@ -148,6 +150,7 @@ impl<const N: usize> Scalar for Dual<N> {
 
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
+        // d atan2(y, x) = (x·dy - y·dx) / (x² + y²); undefined at the origin.
         let square = self.value * self.value + x.value * x.value;
         let (by_y, by_x) = (x.value / square, -self.value / square);
         let mut partials = self.partials;
@@ -174,7 +177,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Every operation of the trait in one expression, so that one derivative exercises them all.
+    /// Every operation of the trait in one expression, so that one derivative tests them all.
     fn everything<S: Scalar>(x: S, y: S) -> S {
         let (s, c) = (x * y).sin_cos();
         let r = (x * x + y * y + S::one()).sqrt();
@@ -186,12 +189,12 @@ mod tests {
     proptest! {
         #[test]
         fn partials_equal_central_differences(x in -2.0..2.0f64, y in -2.0..2.0f64) {
-            prop_assume!((x - y).abs() > 1e-2); // the declared kinks of `everything`
+            prop_assume!((x - y).abs() > 1e-2); // the kinks of `everything`
             let dual = everything(Dual::<2>::variable(x, 0), Dual::<2>::variable(y, 1));
             let h = 1e-6;
             let by_x = (everything(x + h, y) - everything(x - h, y)) / (2.0 * h);
             let by_y = (everything(x, y + h) - everything(x, y - h)) / (2.0 * h);
-            prop_assume!(by_x.abs() + by_y.abs() < 1e3); // the cut of atan2
+            prop_assume!(by_x.abs() + by_y.abs() < 1e3); // excludes the branch cut of atan2
             prop_assert_eq!(dual.value, everything(x, y));
             prop_assert!((dual.partials[0] - by_x).abs() < 1e-7 * (1.0 + by_x.abs()));
             prop_assert!((dual.partials[1] - by_y).abs() < 1e-7 * (1.0 + by_y.abs()));

@@ -1,31 +1,31 @@
-//! The twelve Euler sequences, both ways.
+//! The twelve Euler orders: from angles to a rotation matrix and back.
 //!
 //! An order is named by its body-fixed axes in the order of the product, so `zxy` is
-//! R = Rz(a)·Rx(b)·Ry(c). With i, j the first two axes, k the one left over and e the sign of the
-//! permutation (i, j, k), the matrix of the six orders i-j-k has
+//! R = Rz(a)·Rx(b)·Ry(c). With i, j the first two axes, k the remaining axis and e the sign of the
+//! permutation (i, j, k), the matrix of the six Tait-Bryan orders i-j-k has
 //!
 //! ```text
 //! R_ik = e·sin b,   R_jk = -e·sin a·cos b,  R_kk = cos a·cos b,
 //! R_ij = -e·cos b·sin c,  R_ii = cos b·cos c
 //! ```
 //!
-//! and that of the six orders i-j-i has
+//! and that of the six proper Euler orders i-j-i has
 //!
 //! ```text
 //! R_ii = cos b,  R_ji = sin a·sin b,  R_ki = -e·cos a·sin b,  R_ij = sin b·sin c,  R_ik = e·sin b·cos c
 //! ```
 //!
-//! At the singular angle (b = ±90° for i-j-k; 0° or 180° for i-j-i) only a ± c is defined; the
-//! answer there has c = 0.
+//! At the singular angle (gimbal lock: b = ±90° for i-j-k; 0° or 180° for i-j-i) only a + c or a -
+//! c is determined; c = 0 is returned there.
 
 use crate::{Mat3, Vec3};
 use std::fmt;
 use std::str::FromStr;
 
-/// Below this sine (or cosine) of the middle angle the outer two cannot be told apart.
+/// Below this cosine (i-j-k) or sine (i-j-i) of the middle angle the order counts as singular.
 const SINGULAR_BELOW: f64 = 1e-9;
 
-/// One of the twelve orders of rotation about body-fixed axes.
+/// One of the twelve Euler orders: rotations about three body-fixed axes.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct EulerOrder {
     axes: [u8; 3],
@@ -80,16 +80,19 @@ impl EulerOrder {
 
     /// The three angles of a rotation, in radians.
     ///
-    /// The outer two lie in (-π, π]; the middle one in [-π/2, π/2] for three different axes and in
-    /// [0, π] where the first axis returns.
+    /// The outer two are in (-π, π]. The middle one is in [-π/2, π/2] for three different axes, and
+    /// in [0, π] where the third axis equals the first. At a singular angle the third is 0.
     pub fn from_mat3(self, rotation: Mat3) -> [f64; 3] {
         let [i, j, last] = self.axes();
         let k = 3 - i - j;
+        // j follows i cyclically for an even permutation.
         let e = if (j + 3 - i) % 3 == 1 { 1.0 } else { -1.0 };
         let m = |r: usize, c: usize| rotation.at(r, c);
-        // With c = 0 the second column of Ri(a)·Rj(b) is that of Ri(a) alone.
+        // With c = 0, R = Ri(a)·Rj(b). Rj keeps its own axis, so column j of R is that of Ri(a):
+        // R_jj = cos a, R_kj = e·sin a.
         let alone = || (e * m(k, j)).atan2(m(j, j));
         if last == k {
+            // |cos b| from two entries, and atan2 instead of asin: asin loses digits near ±90°.
             let cosine = m(i, i).hypot(m(i, j));
             let b = (e * m(i, k)).atan2(cosine);
             if cosine < SINGULAR_BELOW {
@@ -97,6 +100,7 @@ impl EulerOrder {
             }
             [(-e * m(j, k)).atan2(m(k, k)), b, (-e * m(i, j)).atan2(m(i, i))]
         } else {
+            // |sin b| likewise: acos loses digits near 0° and 180°.
             let sine = m(i, j).hypot(m(i, k));
             let b = sine.atan2(m(i, i));
             if sine < SINGULAR_BELOW {
@@ -106,7 +110,10 @@ impl EulerOrder {
         }
     }
 
-    /// The direction of axis number `index` (0, 1 or 2) of the sequence, before any rotation.
+    /// The direction of axis `index` (0, 1 or 2) of the order, before any rotation.
+    ///
+    /// # Panics
+    /// If `index` is above 2.
     pub fn axis(self, index: usize) -> Vec3 {
         [Vec3::X, Vec3::Y, Vec3::Z][self.axes()[index]]
     }
@@ -124,7 +131,7 @@ impl fmt::Debug for EulerOrder {
     }
 }
 
-/// A name that is none of the twelve orders.
+/// A name that is not one of the twelve orders.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownOrder(String);
 
@@ -180,7 +187,7 @@ mod tests {
             for order in EulerOrder::ALL {
                 let m = order.to_mat3([a, b, c]);
                 let again = order.to_mat3(order.from_mat3(m));
-                // Inside the singular band the third angle is set to 0: an error of its width.
+                // In the singular band the third angle is set to 0: an error of the band's width.
                 prop_assert!(distance(m, again) < 4.0 * SINGULAR_BELOW, "{order}");
             }
         }

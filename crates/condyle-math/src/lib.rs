@@ -1,22 +1,23 @@
 //! Numbers in space: vectors, rotations, transforms and scalar functions over one [`Scalar`] trait.
 //!
-//! Everything that condyle computes on its hot paths is written once, generic over the number:
-//! [`f64`] gives values, [`Dual`] gives values with exact derivatives, and the trait is shaped so
-//! that lanes (several characters at once) can be added without touching a formula. For that reason
-//! [`Scalar`] has no comparison that yields a `bool`: choices are made with
-//! [`Scalar::select_less`], and table look-ups with [`Scalar::chain`].
+//! Every hot path of condyle is written once, generic over the number type: [`f64`] gives values,
+//! [`Dual`] gives values with exact derivatives, and SIMD lanes (several characters at once) can be
+//! added as another implementation without changing a formula. For that reason [`Scalar`] has no
+//! comparison that returns a `bool`: selections use [`Scalar::select_less`], and table look-ups
+//! [`Scalar::chain`].
 //!
 //! # Conventions
 //!
-//! Right-handed, metres, radians. Column vectors: `p_parent = T * p_child`, and a name says which
-//! frame it maps from and to: `scapula_in_thorax` takes scapula coordinates to thorax coordinates.
-//! Quaternions are `x, y, z, w`; `q` and `-q` are the same rotation. Rotation orders are named by
-//! the body-fixed axes in the order of the product: `zxy` = Rz·Rx·Ry.
+//! Frames are right-handed; units are metres and radians. Vectors are columns:
+//! `p_parent = T * p_child`. The name of a transform gives the frames it maps from and to:
+//! `scapula_in_thorax` maps scapula coordinates to thorax coordinates. Quaternions are
+//! `x, y, z, w`; `q` and `-q` are the same rotation. Euler orders are named by their body-fixed
+//! axes in the order of the product: `zxy` = Rz·Rx·Ry.
 //!
 //! ```
 //! use condyle_math::{Affine, Quat, Vec3};
 //!
-//! // The elbow, flexed by a right angle about z, carries the forearm's tip from x to y.
+//! // Elbow flexion by a right angle about z moves the tip of the forearm from x to y.
 //! let quarter = std::f64::consts::FRAC_PI_2;
 //! let forearm_in_upper_arm =
 //!     Affine::from_rotation(Quat::from_axis_angle(Vec3::Z, quarter).to_mat3());

@@ -5,8 +5,8 @@ use std::ops::Mul;
 
 /// A three-by-three matrix: a rotation, or any linear map.
 ///
-/// Its columns are the images of the axes, so the columns of `scapula_in_thorax` are the scapula's
-/// axes seen from the thorax.
+/// Its columns are the images of the axes: the columns of `scapula_in_thorax` are the axes of the
+/// scapula expressed in the thorax.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mat3<S = f64> {
     /// Image of the first axis.
@@ -61,7 +61,8 @@ impl<S: Scalar> Mat3<S> {
         Self::identity().rotated_z(angle.sin_cos())
     }
 
-    /// `self · Rx` for an angle given by its sine and cosine: four products a row instead of nine.
+    /// `self · Rx` for an angle given by its sine and cosine: four multiplications per row instead
+    /// of nine.
     #[inline(always)]
     pub fn rotated_x(self, (s, c): (S, S)) -> Self {
         Self::from_columns(self.x, self.y * c + self.z * s, self.z * c - self.y * s)
@@ -107,7 +108,7 @@ impl<S: Scalar> Mat3<S> {
 
     /// The rotation vector of a rotation: its axis times its angle in radians, in [0, π].
     ///
-    /// By way of Shepperd's quaternion, the largest of whose components is chosen by the value.
+    /// Computed from the quaternion of [`Quat::from_mat3`].
     pub fn log(self) -> Vec3<S> {
         Quat::from_mat3(self).log()
     }
@@ -120,6 +121,7 @@ impl<S: Scalar> Mat3<S> {
 
     /// The inverse of any regular matrix; not finite for a singular one.
     pub fn inverse(self) -> Self {
+        // The rows of the inverse are the cross products of the columns over the determinant.
         let r = S::one() / self.determinant();
         Self::from_columns(
             self.y.cross(self.z) * r,

@@ -3,9 +3,10 @@
 use crate::{Mat3, Scalar, Vec3};
 use std::ops::{Mul, Neg};
 
-/// Below this squared angle or sine the closed forms are replaced by their series.
+/// Below this squared angle (in `exp`) or squared sine of the half angle (in `log`) the closed
+/// forms, which divide by it, are replaced by their Taylor series.
 ///
-/// The first omitted term is then below 1e-18, under the rounding of f64.
+/// The first omitted term is then below 1e-18, less than the rounding of f64.
 const SERIES_BELOW: f64 = 1e-6;
 
 /// A quaternion x i + y j + z k + w; a rotation when its length is 1.
@@ -32,9 +33,10 @@ impl Quat<f64> {
         Quat { x, y, z, w }
     }
 
-    /// The geodesic angle to another rotation in radians, in [0, π]; `q` and `-q` are one rotation.
+    /// The geodesic angle to another rotation in radians, in [0, π]; `q` and `-q` are the same
+    /// rotation.
     ///
-    /// θ = 2·acos|q·p|, computed by way of the sine so that small angles keep their digits.
+    /// θ = 2·acos|q·p|, computed with atan2, because acos loses half of the digits of small angles.
     ///
     /// ```
     /// use condyle_math::{Quat, Vec3};
@@ -72,26 +74,31 @@ impl<S: Copy> Quat<S> {
 impl<S: Scalar> Quat<S> {
     /// The rotation of a matrix, by Shepperd's formulas.
     ///
-    /// All four are evaluated and the one with the largest divisor is taken, so there is no branch
-    /// on a value. `rotation` must be a proper rotation; small deviations are absorbed by normalising.
+    /// All four are evaluated and the one with the largest divisor is selected, so there is no
+    /// branch on a value. `rotation` must be a proper rotation; normalisation removes small
+    /// deviations.
     pub fn from_mat3(rotation: Mat3<S>) -> Self {
         let (a, b, c) = (rotation.x, rotation.y, rotation.z);
         let one = S::one();
-        // Column j holds the images of axis j: entry (i, j) is a.y for (1, 0), and so on.
+        // a, b, c are the columns, so R₁₀ is a.y. With q = (x, y, z, w), from the diagonal:
+        // 4x², 4y², 4z², 4w².
         let squares = [
             one + a.x - b.y - c.z,
             one - a.x + b.y - c.z,
             one - a.x - b.y + c.z,
             one + a.x + b.y + c.z,
         ];
+        // 4xy, 4xz, 4yz from the symmetric part, and 4xw, 4yw, 4zw from the skew part.
         let pairs = [b.x + a.y, c.x + a.z, c.y + b.z];
         let turns = [b.z - c.y, c.x - a.z, a.y - b.x];
+        // Row i is 4·qᵢ·q: each is q after normalisation, unless qᵢ is near 0.
         let candidates = [
             [squares[0], pairs[0], pairs[1], turns[0]],
             [pairs[0], squares[1], pairs[2], turns[1]],
             [pairs[1], pairs[2], squares[2], turns[2]],
             [turns[0], turns[1], turns[2], squares[3]],
         ];
+        // The squares add up to 4, so the largest is at least 1 and nothing is divided by 0.
         let mut best = candidates[3];
         let mut largest = squares[3];
         for (candidate, square) in candidates.into_iter().zip(squares).take(3) {
@@ -110,19 +117,22 @@ impl<S: Scalar> Quat<S> {
         Self { x: axis.x * s, y: axis.y * s, z: axis.z * s, w: c }
     }
 
-    /// The exponential: the rotation about `v` by its length in radians; smooth at zero.
+    /// The exponential map: the rotation about `v` by its length in radians; smooth at zero.
     #[inline]
     pub fn exp(v: Vec3<S>) -> Self {
         let square = v.norm_squared();
         let small = S::from_f64(SERIES_BELOW);
-        // The closed form is evaluated away from 0 even where the series is taken.
+        // `select_less` evaluates both branches: where the series is selected the closed form runs
+        // at angle 1, so that it does not divide by 0 and the square root has a finite slope.
         let angle = square.select_less(small, S::one(), square).sqrt();
         let (s, c) = angle.scale(0.5).sin_cos();
+        // sin(θ/2)/θ = 1/2 - θ²/48 + θ⁴/3840 - …
         let factor = square.select_less(
             small,
             S::from_f64(0.5) - square.scale(1.0 / 48.0) + (square * square).scale(1.0 / 3840.0),
             s / angle,
         );
+        // cos(θ/2) = 1 - θ²/8 + θ⁴/384 - …; where it is selected, c is the cosine for angle 1.
         let w = square.select_less(
             small,
             S::one() - square.scale(1.0 / 8.0) + (square * square).scale(1.0 / 384.0),
@@ -131,18 +141,23 @@ impl<S: Scalar> Quat<S> {
         Self { x: v.x * factor, y: v.y * factor, z: v.z * factor, w }
     }
 
-    /// The logarithm: the shortest rotation vector, of length in [0, π]; inverse of [`Quat::exp`].
+    /// The logarithm map: the shortest rotation vector, of length in [0, π]; inverse of
+    /// [`Quat::exp`].
     ///
-    /// At exactly π both signs of the axis are right; the one stored in the quaternion is returned.
+    /// At exactly π both signs of the axis are valid; the one stored in the quaternion is returned.
     #[inline]
     pub fn log(self) -> Vec3<S> {
+        // Of q and -q the one with w ≥ 0, whose angle is at most π.
         let near = self.w.select_less(S::zero(), -S::one(), S::one());
         let (v, w) = (self.vector() * near, self.w * near);
         let square = v.norm_squared();
         let small = S::from_f64(SERIES_BELOW);
+        // θ/|v| = 2·atan2(|v|, w)/|v|, with |v| = sin(θ/2); evaluated at |v| = 1 where not
+        // selected.
         let sine = square.select_less(small, S::one(), square).sqrt();
         let closed = sine.atan2(w).scale(2.0) / sine;
-        // For a small vector part w is near 1, so dividing by it is safe there only.
+        // The series is that of 2·atan(√t)/|v| in t = |v|²/w². It is selected only for a small
+        // vector part, where w is near 1; elsewhere w may be 0 and the division uses 1 instead.
         let w_safe = square.select_less(small, w, S::one());
         let t = square / (w_safe * w_safe);
         let series = (S::one() - t.scale(1.0 / 3.0) + (t * t).scale(1.0 / 5.0)).scale(2.0) / w_safe;
@@ -155,7 +170,7 @@ impl<S: Scalar> Quat<S> {
         Self { x: -self.x, y: -self.y, z: -self.z, w: self.w }
     }
 
-    /// The inner product of four components.
+    /// The inner product of the four components.
     #[inline(always)]
     pub fn dot(self, other: Self) -> S {
         self.x * other.x + self.y * other.y + self.z * other.z + self.w * other.w
@@ -168,9 +183,11 @@ impl<S: Scalar> Quat<S> {
         Self { x: self.x * r, y: self.y * r, z: self.z * r, w: self.w * r }
     }
 
-    /// The rotation matrix; the length is divided out, and without one it is the identity.
+    /// The rotation matrix of a quaternion of any length; the identity for the zero quaternion.
     #[inline(always)]
     pub fn to_mat3(self) -> Mat3<S> {
+        // R depends on products of two components over |q|²: no square root is needed. Where |q|²
+        // underflows, dividing by 1 leaves all products near 0, and R the identity.
         let square = self.dot(self);
         let least = S::from_f64(1e-300);
         let s = S::from_f64(2.0) / square.select_less(least, S::one(), square);
@@ -236,7 +253,7 @@ mod tests {
             let size = 10f64.powf(tiny);
             let v = v.normalized() * if near_pi { PI - size } else { size };
             let back = Quat::exp(v).log();
-            // At π itself the axis may come back reversed: compare as rotations.
+            // At π the axis may be returned with the other sign: compare as rotations.
             prop_assert!(Quat::exp(back).angle_to(Quat::exp(v)) < 1e-14);
             if !near_pi {
                 prop_assert!((back - v).norm() <= 1e-15 * v.norm());
@@ -270,7 +287,7 @@ mod tests {
                 for (e, (a, b)) in exact.to_array().iter().zip(a.into_iter().zip(b)) {
                     prop_assert!((e.partials[0] - (a - b) / (2.0 * h)).abs() < 1e-8);
                 }
-                // log(exp(v)) = v, so its derivative is the unit vector.
+                // log(exp(v)) = v, so its derivative is a unit vector.
                 let back = exact.log().to_array();
                 for (j, b) in back.iter().enumerate() {
                     let expected = if i == j { 1.0 } else { 0.0 };

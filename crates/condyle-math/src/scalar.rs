@@ -1,13 +1,13 @@
-//! The number that kernels are generic over.
+//! The number type that kernels are generic over.
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// A real number, or several at once, or one with its derivatives.
+/// A real number, several real numbers (SIMD lanes), or a number with its derivatives.
 ///
-/// Implemented for [`f64`] and [`Dual`](crate::Dual). Smooth kernels stay within what lanes can do,
-/// where no question about a number has a single answer; those that branch ask [`Scalar::value`]
-/// and run lane by lane.
+/// Implemented for [`f64`] and [`Dual`](crate::Dual). Smooth kernels use only operations that work
+/// on all lanes at once, where a comparison has no single result. Kernels that branch read
+/// [`Scalar::value`] and have to be run lane by lane.
 pub trait Scalar:
     Copy
     + Debug
@@ -38,14 +38,15 @@ pub trait Scalar:
     /// The angle in radians, in (-π, π], of the point (`x`, `self`).
     fn atan2(self, x: Self) -> Self;
 
-    /// A function known only by its value and its derivative, applied to every lane.
+    /// A function given by its value and its derivative, applied to every lane.
     ///
-    /// `law` returns `(f(x), f'(x))`. This is how splines and other tables enter a kernel.
+    /// `law` returns `(f(x), f'(x))`. Kernels evaluate splines and other tables through it.
     fn chain(self, law: impl Fn(f64) -> (f64, f64)) -> Self;
 
     /// `then` where `self < bound`, `otherwise` elsewhere, lane by lane.
     ///
-    /// Both branches are evaluated before the choice: guard divisions in the branch not taken.
+    /// Both branches are evaluated before the selection: guard divisions in the branch that is not
+    /// selected.
     fn select_less(self, bound: Self, then: Self, otherwise: Self) -> Self;
 
     /// Zero.

@@ -1,27 +1,30 @@
-//! Sine and cosine together, without a call and without a branch.
+//! Sine and cosine together, without a library call or a branch.
 //!
-//! x = k·π/2 + r with |r| ≤ π/4, by subtracting π/2 in three parts, the first two of which have so few
-//! digits that k times them is exact; then a polynomial of r each, and the quadrant k mod 4. The error stays below 2⁻⁵². An angle beyond 10⁹ counts as 10⁹: its last
-//! digit is worth more than a thousandth of a degree there. Nothing here depends on the platform's
-//! mathematics library, so an angle has the same sine on every machine.
+//! Cody-Waite range reduction: x = k·π/2 + r with |r| ≤ π/4, subtracting π/2 in three parts, the
+//! first two of which have so few bits that k times them is exact. Then one polynomial in r for
+//! each of the two, and the quadrant k mod 4. The absolute error stays below 2⁻⁵². Angles beyond
+//! ±10⁹ are clamped. The result does not depend on the platform's mathematics library, so the sine
+//! of an angle is the same on every machine.
 
 use std::f64::consts::FRAC_2_PI;
 
 /// The largest angle; k stays below 2³⁰.
 const MOST: f64 = 1e9;
 
-/// π/2 in three parts: 23 digits, the next 23, and the rest.
+/// π/2 in three parts: its first 23 bits, the next 23, and the remainder. k has at most 30 bits, so
+/// the products of k with the first two fit into the 53 bits of an f64.
 const HALF_PI: [f64; 3] = [
     f64::from_bits(0x3ff9_21fb_4000_0000),
     f64::from_bits(0x3e74_442d_0000_0000),
     5.390302858158119e-15,
 ];
 
-/// Adding it rounds to a whole number, which then stands in the lowest bits.
+/// 1.5·2⁵²: adding it rounds a number to an integer, which then occupies the lowest mantissa bits.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
-/// The polynomials of z = r² that go through (sin r - r)/r³ and (cos r - 1 + r²/2)/r⁴ at the six
-/// Chebyshev points of 0 to (π/4)², side by side; both sums are then right to 10⁻¹⁷.
+/// Coefficients in ascending powers of z = r² of the polynomials that interpolate (sin r - r)/r³
+/// and (cos r - 1 + r²/2)/r⁴ at the six Chebyshev nodes of [0, (π/4)²]; sine and cosine are then
+/// exact to 10⁻¹⁷.
 const SERIES: [[f64; 2]; 6] = [
     [-0.16666666666666666, 0.041666666666666664],
     [0.008333333333330946, -0.0013888888888887395],
@@ -31,7 +34,8 @@ const SERIES: [[f64; 2]; 6] = [
     [1.591810123167728e-10, -1.1382614869434128e-11],
 ];
 
-/// The sums of c[n]·zⁿ for both, side by side, in two halves that do not wait for each other.
+/// Σ c[n]·zⁿ for both polynomials: even and odd powers are summed separately (Estrin), so that the
+/// two dependency chains run in parallel.
 #[inline(always)]
 fn series(z: f64) -> [f64; 2] {
     let z2 = z * z;
@@ -48,14 +52,17 @@ pub(crate) fn sin_cos(x: f64) -> (f64, f64) {
     let shifted = x * FRAC_2_PI + ROUND;
     let quadrant = shifted.to_bits();
     let k = shifted - ROUND;
+    // k·HALF_PI[0] and k·HALF_PI[1] are exact; only the third product and the sum round.
     let (near, rest) = ((x - k * HALF_PI[0]) - k * HALF_PI[1], k * HALF_PI[2]);
     let r = near - rest;
-    // What rounding took from r.
+    // The rounding error of r: r + tail is the reduced angle to about twice the precision.
     let tail = (near - r) - rest;
     let z = r * r;
     let [sine, cosine] = series(z);
+    // To first order sin(r + tail) = sin r + tail and cos(r + tail) = cos r - r·tail.
     let sine = r + (r * z * sine + tail);
     let cosine = (1.0 - 0.5 * z) + (z * z * cosine - r * tail);
+    // Odd quadrants exchange the two; the sine is negative for k mod 4 = 2, 3, the cosine for 1, 2.
     let (s, c) = if quadrant & 1 == 0 { (sine, cosine) } else { (cosine, sine) };
     let flip = |value: f64, by: u64| f64::from_bits(value.to_bits() ^ (by << 63));
     (flip(s, (quadrant >> 1) & 1), flip(c, ((quadrant + 1) >> 1) & 1))

@@ -1,25 +1,26 @@
-//! A ball joint's rotation as the direction of the bone and the turn about it.
+//! Swing-twist decomposition: the direction of the bone, and the rotation about it.
 
 use crate::{Quat, Scalar, Vec3};
 
-/// A rotation split as `swing · twist`: the bone turns about itself, then moves to its direction.
+/// A rotation decomposed as `swing · twist`: the bone rotates about its own axis, then swings to
+/// its direction.
 ///
-/// The twist is the rotation about `axis` nearest to the whole; the swing's axis is perpendicular
-/// to `axis`. The split is smooth except where the swing is a half turn: there any twist fits, and
-/// the answer has no twist.
+/// The twist is the rotation about `axis` that is nearest to the whole rotation; the axis of the
+/// swing is perpendicular to `axis`. The decomposition is smooth except where the swing is a half
+/// turn: there the twist is undetermined, and the identity is returned for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SwingTwist<S = f64> {
-    /// The rotation that carries the axis to its new direction, along the shortest arc.
+    /// The rotation that moves the axis to its new direction along the shortest arc.
     pub swing: Quat<S>,
-    /// The rotation about the axis that comes first.
+    /// The rotation about the axis, applied first.
     pub twist: Quat<S>,
 }
 
-/// Below this length of the part along the axis the twist is undetermined.
+/// Below this length of the projected quaternion (v·axis, w) the twist is undetermined.
 const HALF_TURN: f64 = 1e-12;
 
 impl<S: Scalar> SwingTwist<S> {
-    /// Splits a unit quaternion about an axis of length 1 fixed in the bone.
+    /// Decomposes a unit quaternion about an axis of length 1 fixed in the bone.
     ///
     /// ```
     /// use condyle_math::{Quat, SwingTwist, Vec3};
@@ -30,8 +31,10 @@ impl<S: Scalar> SwingTwist<S> {
     /// assert!(split.swing.angle_to(swing) < 1e-15);
     /// ```
     pub fn of(rotation: Quat<S>, axis: Vec3<S>) -> Self {
+        // The twist is the projection (a·(v·a), w) of the quaternion, normalised.
         let along = rotation.vector().dot(axis);
         let length = (along * along + rotation.w * rotation.w).sqrt();
+        // `select_less` evaluates both branches: `safe` keeps the one that is not selected finite.
         let bound = S::from_f64(HALF_TURN);
         let safe = length.select_less(bound, S::one(), length);
         let sine = length.select_less(bound, S::zero(), along / safe);
@@ -40,13 +43,14 @@ impl<S: Scalar> SwingTwist<S> {
         Self { swing: rotation * twist.conjugate(), twist }
     }
 
-    /// The whole rotation again.
+    /// The composed rotation, `swing · twist`.
     pub fn rotation(self) -> Quat<S> {
         self.swing * self.twist
     }
 
     /// The signed twist about `axis` in radians, in (-π, π].
     pub fn twist_angle(self, axis: Vec3<S>) -> S {
+        // Of q and -q the one with w ≥ 0, so that twice the half angle is in (-π, π].
         let near = self.twist.w.select_less(S::zero(), -S::one(), S::one());
         (self.twist.vector().dot(axis) * near).atan2(self.twist.w * near).scale(2.0)
     }
@@ -67,7 +71,7 @@ mod tests {
             let split = SwingTwist::of(q, axis);
             prop_assert!(split.rotation().angle_to(q) < 1e-14);
             prop_assert!(split.swing.vector().dot(axis).abs() < 1e-14);
-            // The bone's direction is the swing's business alone.
+            // The swing alone determines the direction of the bone.
             let turned = split.swing.to_mat3() * axis;
             prop_assert!((turned - q.to_mat3() * axis).norm() < 1e-14);
         }

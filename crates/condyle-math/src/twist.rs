@@ -1,12 +1,12 @@
-//! Generators of rigid motion.
+//! Twists: generators of rigid motions.
 
 use crate::{Affine, Scalar, Vec3};
 use std::ops::{Add, AddAssign, Mul};
 
 /// An infinitesimal rigid motion: how a frame moves per unit of one coordinate.
 ///
-/// `linear` is the velocity of the material point that passes the origin, so twists of one frame of
-/// reference add, and a point at `p` moves with `angular × p + linear`.
+/// `linear` is the velocity of the material point that coincides with the origin. Twists in the
+/// same frame of reference add, and a point at `p` has the velocity `angular × p + linear`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Twist<S = f64> {
     /// Angular velocity per unit of the coordinate, rad.
@@ -40,17 +40,18 @@ impl<S: Scalar> Twist<S> {
         self.angular.cross(point) + self.linear
     }
 
-    /// The same motion seen from the parent of `frame` (the adjoint of a rigid transform).
+    /// The same motion expressed in the parent of `frame`: the adjoint of a rigid transform,
+    /// (ω, v) ↦ (R·ω, R·v + t × R·ω).
     #[inline(always)]
     pub fn transformed(self, frame: Affine<S>) -> Self {
         let angular = frame.linear * self.angular;
         Self { angular, linear: frame.linear * self.linear + frame.translation.cross(angular) }
     }
 
-    /// The generator of a rigid motion from its value and its derivative: Ṫ·T⁻¹.
+    /// The twist Ṫ·T⁻¹ of a rigid transform, from its value T and its derivative Ṫ.
     #[inline(always)]
     pub fn from_derivative(value: Affine<S>, derivative: Affine<S>) -> Self {
-        // Ṙ·Rᵀ = [ω]×, read off by ω = ½ Σ aᵢ × ȧᵢ over the columns.
+        // Ṙ·Rᵀ = [ω]×, so ȧ = ω × a for each column a of R, and Σ a × ȧ = 3ω - Σ (a·ω)·a = 2ω.
         let (r, d) = (value.linear, derivative.linear);
         let angular = (r.x.cross(d.x) + r.y.cross(d.y) + r.z.cross(d.z)) * S::from_f64(0.5);
         Self { angular, linear: derivative.translation - angular.cross(value.translation) }

@@ -100,7 +100,7 @@ impl<S: Scalar> Vec3<S> {
         self * (S::one() / self.norm())
     }
 
-    /// The product component by component.
+    /// The component-wise (Hadamard) product.
     #[inline(always)]
     pub fn times(self, other: Self) -> Self {
         Self::new(self.x * other.x, self.y * other.y, self.z * other.z)

@@ -1,10 +1,11 @@
-//! The scapula on the ribs: what glides touches, at the angle nearest to rest, and moves smoothly.
+//! Contact of the scapula with the ribs: the points are on the surface, at the angle nearest to
+//! rest, and the derivatives are right.
 
 use condyle_math::{Affine, Dual, Mat3, Scalar, Vec3};
 use condyle_model::component::{ContactError, ContactPair, Glide, Gliding};
 use std::f64::consts::{PI, TAU};
 
-/// Numbers in [-1, 1) from a linear congruence.
+/// Numbers in [-1, 1) from a linear congruential generator.
 struct Random(u64);
 
 impl Random {
@@ -43,7 +44,7 @@ fn level(p: Vec3, r: Vec3) -> f64 {
     (p.x / r.x).powi(2) + (p.y / r.y).powi(2) + (p.z / r.z).powi(2) - 1.0
 }
 
-/// How far off the surface a point near it is, to first order.
+/// The distance of a point from the surface, to first order near it.
 fn off_surface(p: Vec3, r: Vec3) -> f64 {
     let per: Vec3 = r.to_array().map(|r| 1.0 / (r * r)).into();
     level(p, r).abs() / (2.0 * p.times(per).norm())
@@ -90,7 +91,7 @@ fn scanned_roots(f: &dyn Fn(f64) -> f64, steps: usize) -> Vec<f64> {
     roots
 }
 
-/// The distance of a point from an ellipsoid by grids that close in on their best place.
+/// The distance of a point from an ellipsoid by grids that are refined around their best point.
 ///
 /// The nearest point lies in the same octant as the point; a cube's three faces cover it, without
 /// the poles of longitude and latitude.
@@ -156,7 +157,7 @@ fn what_glides_touches_at_the_root_nearest_to_rest_or_comes_as_near_as_it_can() 
                 touching[k] += 1;
                 worst_off = worst_off.max(off_surface(placed, r));
                 let roots = scanned_roots(f, 500);
-                // A pair closer than the scan's step is lost to the scan, not to the kernel.
+                // The scan misses a pair of roots closer than its step; the kernel does not.
                 let Some(&nearest) = roots.first() else { continue };
                 assert!(angle.abs() < nearest.abs() + 1e-9, "{case} {angle} {roots:?}");
                 if (angle.abs() - nearest.abs()).abs() > 1e-9 {
@@ -166,7 +167,7 @@ fn what_glides_touches_at_the_root_nearest_to_rest_or_comes_as_near_as_it_can() 
                 }
             } else {
                 apart[k] += 1;
-                // No sign but one, and no angle where |f| is less.
+                // f has one sign, and |f| is nowhere smaller.
                 let least = (0..500)
                     .map(|i| f(f64::from(i) * TAU / 500.0) * f(angle).signum())
                     .fold(f64::INFINITY, f64::min);
@@ -180,7 +181,7 @@ fn what_glides_touches_at_the_root_nearest_to_rest_or_comes_as_near_as_it_can() 
             }
         }
         if tied == 0 && next.is_finite() {
-            // The scan may have missed a pair that is nearer: then the kernel says less.
+            // The scan may have missed a nearer pair: then the kernel's value is smaller.
             assert!(glide.next <= next + 1e-8, "{case} {} {next}", glide.next);
             if glide.next < next - 1e-8 {
                 assert!(glide.next >= 0.0);
@@ -233,7 +234,8 @@ fn slopes_by_all_motions_and_drivers_are_those_of_central_differences() {
             if plain.gaps[k] == 0.0 {
                 steep > 0.5
             } else {
-                // Gaps bend hard only where the nearest point changes sides, deep inside.
+                // The curvature of gaps is large only deep inside, where the nearest point changes
+                // sides.
                 bent > 0.5 && plain.gaps[k].abs() > 1e-3 && plain.gaps[k] > -0.01
             }
         });
@@ -312,7 +314,7 @@ fn the_pairs_of_shao_and_ng_thow_hing_glide_on_the_ellipsoid() {
             assert!((glide.angles[k] - nearest).abs() < 1e-12, "{drivers:?} {glide:?} {nearest}");
         }
     }
-    // Nothing jumps on the way: the largest step shrinks with the steps.
+    // No discontinuity on the way: the largest change decreases with the step size.
     let largest = |n: u32| {
         let angles = |i: u32| g.glide(pose, &path(f64::from(i) / f64::from(n))).angles;
         let step = |i: u32| {
@@ -427,7 +429,7 @@ fn no_input_breaks_it() {
 
 #[test]
 fn points_on_their_axes_do_not_turn_and_tell_their_distance() {
-    // The first on the axis, the second on the line to the first: nothing to turn.
+    // The first point on the axis, the second on the line to the first: rotations have no effect.
     let pair = ContactPair { first: Vec3::Z * 0.1, second: Vec3::Z * 0.05, at: [0.0; 2] };
     let radii = Vec3::new(0.07, 0.15, 0.07);
     let g = Gliding::new(Affine::IDENTITY, radii, Vec3::Z, vec![pair]).unwrap();
@@ -482,7 +484,7 @@ fn what_nothing_can_glide_with_is_refused_with_a_remedy() {
     assert_eq!(make(Vec3::X * f64::INFINITY, axis, pairs).0, ContactError::NotFinite);
 }
 
-/// The least nanoseconds of one call over all cases, without and with eight derivatives.
+/// The smallest time of one call in nanoseconds over all cases, without and with eight derivatives.
 fn clock(cases: &[&(Gliding, Affine, [f64; 2])]) -> [f64; 2] {
     let mut best = [f64::INFINITY; 2];
     let per = 1.0 / cases.len() as f64;

@@ -1,4 +1,4 @@
-//! Models of another size, random trees among them.
+//! Scaled models, including random trees.
 
 #[allow(dead_code, reason = "the tests of the random models use more of it")]
 #[path = "random_models/grow.rs"]
@@ -27,8 +27,8 @@ fn root(model: &Model, id: SegmentId) -> SegmentId {
     here
 }
 
-/// Whether everything that moves a bone by a length is a function's: coordinates that are distances
-/// themselves are the caller's, and nobody knows what a user's law means.
+/// Whether all lengths that move a bone are values of functions: distances that are coordinates
+/// belong to the caller, and the meaning of the numbers of a user's law is unknown.
 fn grows_whole(model: &Model) -> bool {
     model.components().iter().all(|named| match &named.component {
         Component::Custom(_) => false,
@@ -153,12 +153,12 @@ fn each_length_grows_with_the_bone_that_it_is_fixed_in() {
     let scaled = model.scaled(&[pelvis, thigh, shank, patella]);
     let (height, angle, glide) = (0.95, 0.7, 0.03);
     let found = pose(&scaled, &[height, angle, glide]);
-    // What the pelvis stands at is in the room; the hip is in the pelvis.
+    // The position of the pelvis is in the world and not scaled; that of the hip is in the pelvis.
     let hip = Vec3::new(0.0, height - 0.06 * pelvis, 0.08 * pelvis);
     let near = |a: Vec3, b: Vec3| assert!((a - b).norm() < 1e-15, "{a:?} {b:?}");
     near(found[0].translation, Vec3::new(0.0, height, 0.0));
     near(found[1].translation, hip);
-    // The slide is in the thigh; the angle by the same function is what it was.
+    // The translation is in the thigh and scaled; the angle by the same function is unchanged.
     let half: f64 = 0.5 * angle + 0.1;
     let knee = hip + Vec3::new(half, -0.4, 0.0) * thigh;
     let own = Vec3::new(-half.sin(), half.cos(), 0.0) * (0.02 * shank);

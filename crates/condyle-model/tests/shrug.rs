@@ -5,7 +5,7 @@ use condyle_math::{Quat, Vec3};
 use condyle_model::component::{Compensate, Depend};
 use condyle_model::{CoordinateKind, Mode, Model, ModelBuilder, Pose, Program, SegmentId};
 
-/// Thorax, clavicle, scapula and humerus, each a hinge; the thorax turns too.
+/// Thorax, clavicle, scapula and humerus, each with a hinge.
 fn shoulder(weight: Option<f64>) -> (Model, [SegmentId; 4]) {
     let mut b = ModelBuilder::new("shoulder");
     let thorax = b.segment("thorax", None);
@@ -62,7 +62,7 @@ fn a_compensated_humerus_keeps_its_orientation_and_stays_attached() {
 fn without_compensation_the_humerus_turns_and_half_of_it_turns_half() {
     let angle = |weight| {
         let (model, [.., humerus]) = shoulder(weight);
-        // The clavicle alone, so that half is half of one rotation.
+        // The clavicle alone, so that half the weight is half of one rotation.
         let rest = orientation(&pose(&model, [0.0; 4]), humerus);
         rest.angle_to(orientation(&pose(&model, [0.0, 0.5, 0.0, 0.0]), humerus))
     };
@@ -124,16 +124,16 @@ fn a_lifted_arm_lifts_the_clavicle() {
         [effective[1].to_degrees(), effective[2].to_degrees(), pose.limit_row(0).to_degrees()]
     };
     for (abduction, least) in table {
-        // Pressed down it stops at the bound, lifted it goes where it is asked.
+        // Below the bound it is clamped, above it follows the request.
         let [low, led, _] = pose_at(abduction, -40.0, Mode::Posed);
         assert!((low - least).abs() < 1e-13 && (led - least).abs() < 1e-13, "{low} {led}");
         let [high, ..] = pose_at(abduction, 30.0, Mode::Posed);
         assert!((high - 30.0).abs() < 1e-13);
-        // In open mode it passes, and a row says by how much it is too low.
+        // In open mode it passes unchanged, and the limit row is the violation.
         let [open, _, row] = pose_at(abduction, -40.0, Mode::Open);
         assert!((open + 40.0).abs() < 1e-13 && (row - (-40.0 - least)).abs() < 1e-13);
     }
-    // Between two points of the table it runs straight.
+    // Between two points of the table it is linear.
     let [middle, ..] = pose_at(90.0, -40.0, Mode::Posed);
     assert!((middle - 0.5 * (-6.7 + 4.85)).abs() < 1e-13, "{middle}");
 }

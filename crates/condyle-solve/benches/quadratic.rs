@@ -68,7 +68,7 @@ fn main() {
     });
     println!("cholesky n {n}: copy and solve {time:.2} us");
 
-    // A box wide enough for the free minimiser, and one that five of its sides hold.
+    // Bounds wide enough for the unconstrained minimiser, and bounds of which five are active.
     let mut free = gradient.clone();
     cholesky::solve(&factor, n, &mut free);
     let wide = 2.0 * free.iter().fold(0.0, |m: f64, x| m.max(x.abs()));

@@ -21,7 +21,7 @@ use std::fmt;
 /// The matrix is not positive definite to working precision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PivotFailure {
-    /// The first row whose pivot is not safely positive; the rows before it are factored.
+    /// The first row whose pivot is not positive beyond rounding; the rows before it are factored.
     pub index: usize,
 }
 
@@ -71,8 +71,8 @@ pub fn factor(a: &mut [f64], n: usize) -> Result<(), PivotFailure> {
 
 /// Factors like [`factor`], reading `A` from the upper triangle.
 ///
-/// Saves [`factor`]'s transposition where the caller writes the matrix anyway. The strict lower
-/// triangle is neither read nor written.
+/// Saves the transposition of [`factor`] if the caller can write the upper triangle itself. The
+/// strict lower triangle is neither read nor written.
 ///
 /// # Errors
 ///
@@ -95,7 +95,7 @@ pub fn factor_upper(a: &mut [f64], n: usize) -> Result<(), PivotFailure> {
         let (done, rest) = a.split_at_mut(j * n);
         let row = &mut rest[j..n];
         let threshold = relative * row[0];
-        // Row j of A minus the outer products of the finished rows.
+        // Row j of A - Σ_k U_kᵀ U_k over the finished rows k < j (left-looking).
         subtract_rows(row, done, n, j, |k| done[k * n + j], 0..j);
         let pivot = row[0];
         if !(pivot > threshold && pivot < f64::INFINITY) {
@@ -130,12 +130,15 @@ pub fn factor_upper(a: &mut [f64], n: usize) -> Result<(), PivotFailure> {
 pub fn solve(factor: &[f64], n: usize, b: &mut [f64]) {
     assert_eq!(factor.len(), n * n, "the factor must have {n} x {n} numbers");
     assert_eq!(b.len(), n, "the right-hand side must have {n} numbers");
+    // Forward substitution by rows of U: once y_k is known, its contribution to the rest is
+    // removed.
     for k in 0..n {
         let row = &factor[k * n + k..k * n + n];
         let (head, tail) = b[k..].split_first_mut().expect("k < n");
         *head /= row[0];
         axpy(tail, -*head, &row[1..]);
     }
+    // Back substitution.
     for k in (0..n).rev() {
         let row = &factor[k * n + k..k * n + n];
         let (head, tail) = b[k..].split_first_mut().expect("k < n");
@@ -195,7 +198,8 @@ pub(crate) fn axpy(y: &mut [f64], a: f64, x: &[f64]) {
     }
 }
 
-/// `Σ x_i y_i` with four running sums, in an order that depends on the length only.
+/// `Σ x_i y_i` with four running sums, in an order that depends only on the length: results are
+/// reproducible.
 #[inline]
 pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
     let len = x.len().min(y.len());

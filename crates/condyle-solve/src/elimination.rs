@@ -1,10 +1,10 @@
-//! Equality rows made orthonormal, and those that others span already left out.
+//! Orthonormalisation of equality rows, with elimination of linearly dependent ones.
 
-/// An equality row that the others span to within this share of its length adds nothing: loops of
-/// a symmetric or planar model often say the same thing twice.
+/// An equality row counts as linearly dependent if its part orthogonal to the others is below this
+/// fraction of the longest row. Loops of a symmetric or planar model often have redundant rows.
 const DEPENDENT: f64 = 1e-7;
 
-/// How the equality rows were made orthonormal, to do the same to their values.
+/// The operations that orthonormalised the rows, to apply the same ones to their right-hand sides.
 #[derive(Debug)]
 pub(crate) struct Elimination {
     rank: usize,
@@ -23,15 +23,15 @@ impl Elimination {
         }
     }
 
-    /// Replaces rows of length `n` by orthonormal ones that span the same, and by zeros where others
-    /// span them already (Gram-Schmidt, the longest remaining row first).
+    /// Replaces rows of `n` entries by orthonormal rows with the same span, and dependent ones by
+    /// zeros (modified Gram-Schmidt, the longest remaining row first).
     pub(crate) fn orthonormalise(&mut self, rows: &mut [f64], n: usize) {
         let m = self.picks.len();
         self.rank = 0;
         let length = |row: &[f64]| row.iter().map(|v| v * v).sum::<f64>().sqrt();
         let longest = rows.chunks_exact(n.max(1)).map(length).fold(0.0, f64::max);
         for i in 0..m {
-            // Rows i.. are orthogonal to those before; take the longest next.
+            // Rows i.. are orthogonal to the rows before i; the longest of them is the next pivot.
             let norm = |k: usize, rows: &[f64]| length(&rows[k * n..(k + 1) * n]);
             let mut pick = i;
             for k in i + 1..m {
@@ -43,6 +43,7 @@ impl Elimination {
                 rows.swap(i * n + j, pick * n + j);
             }
             let size = norm(i, rows);
+            // If the longest is negligible, so are all others.
             if size <= DEPENDENT * longest || size == 0.0 {
                 rows[i * n..].fill(0.0);
                 break;
@@ -51,6 +52,7 @@ impl Elimination {
             self.picks[i] = pick;
             self.sizes[i] = size;
             rows[i * n..(i + 1) * n].iter_mut().for_each(|v| *v /= size);
+            // Subtract the projection on the new unit row from all later rows.
             let (done, rest) = rows.split_at_mut((i + 1) * n);
             let unit = &done[i * n..];
             for (k, row) in rest.chunks_exact_mut(n).enumerate() {
@@ -61,9 +63,11 @@ impl Elimination {
         }
     }
 
-    /// Turns values of the original rows into those of the orthonormal ones; 0 for dropped rows.
+    /// Transforms right-hand sides of the original rows to those of the orthonormal rows, in place;
+    /// 0 for eliminated rows.
     pub(crate) fn apply(&self, values: &mut [f64]) {
         let m = values.len();
+        // The row operations of `orthonormalise`, in the same order.
         for i in 0..self.rank {
             values.swap(i, self.picks[i]);
             values[i] /= self.sizes[i];
@@ -96,7 +100,7 @@ mod tests {
                 assert!((dot - expected).abs() < 1e-14, "{i} {j}: {dot}");
             }
         }
-        // A point that meets the new rows meets the old ones.
+        // A point that satisfies the original rows satisfies the orthonormal ones.
         let point = [0.3, -0.7, 0.2, 1.1];
         let mut values: Vec<f64> =
             (0..4).map(|i| (0..n).map(|k| original[i * n + k] * point[k]).sum()).collect();

@@ -1,63 +1,67 @@
-//! Bounded nonlinear least squares with equalities, by Gauss-Newton steps in a trust box.
+//! Bounded nonlinear least squares with equalities and inequalities: sequential quadratic
+//! programming with Gauss-Newton steps in a trust region.
 //!
-//! Minimises F(x) over x within bounds, subject to c(x) = 0 and g(x) ≥ 0, where x may live on a
-//! manifold: the caller applies steps. Each iteration solves the quadratic program
+//! Minimises F(x) over x within bounds, subject to c(x) = 0 and g(x) ≥ 0. x may be on a manifold:
+//! the caller applies the steps, x ⊕ d (the retraction). Each iteration solves the quadratic
+//! program
 //!
 //! ```text
 //! min ∇Fᵀd + ½ dᵀHd   with   bounds on x ⊕ d,  |dᵢ| ≤ Δ·scaleᵢ,  c + C d = 0,  g + G d ≥ 0
 //! ```
 //!
-//! and accepts the step if the merit F + μ(Σ|c| + Σ max(0, -g)) falls. Bounds are met exactly and
-//! sit in the active set, which is kept from one solve to the next: a limb at the end of its range
-//! costs nothing extra. When the model promises less than `tolerance · F`, the last step is still
-//! tried, so that directions that F hardly feels come to rest where the caller's prior wants them.
+//! and accepts the step if the merit function F + μ(Σ|c| + Σ max(0, -g)) decreases. Bounds are
+//! satisfied exactly. The active set is the warm start of the next quadratic program, so a
+//! coordinate that stays at its bound costs no extra iterations. When the model predicts a decrease
+//! below `tolerance · F`, the last step is still tried, so that directions in which F is nearly
+//! flat converge to the minimum of the caller's prior.
 
 use crate::elimination::Elimination;
 use crate::quadratic::{QuadraticProgram, Status, Workspace};
 
-/// A smooth problem at a point that moves by steps.
+/// A smooth problem with a current point, which the problem stores and moves by steps.
 pub trait Problem {
-    /// Evaluates at the current point moved by `step`; this becomes the trial point.
+    /// Evaluates at the current point moved by `step`, which becomes the trial point.
     ///
-    /// Returns F and fills the values of the equalities and inequalities there.
+    /// Returns F there and fills the values c of the equalities and g of the inequalities.
     fn evaluate(&mut self, step: &[f64], equalities: &mut [f64], inequalities: &mut [f64]) -> f64;
 
     /// Makes the trial point the current one.
     fn accept(&mut self);
 
-    /// Fills the quadratic model at the current point, which was the last trial point accepted.
+    /// Fills the quadratic model at the current point, the last accepted trial point.
     fn linearise(&mut self, local: &mut LocalModel);
 }
 
 /// The quadratic model of a problem at a point, row-major.
 #[derive(Clone, Debug)]
 pub struct LocalModel {
-    /// Second derivative, n × n; only the lower triangle is read.
+    /// The Gauss-Newton approximation of the second derivative of F, n × n; only the lower triangle
+    /// is read.
     pub hessian: Vec<f64>,
-    /// First derivative.
+    /// The gradient of F, n.
     pub gradient: Vec<f64>,
-    /// Least value of each component of a step.
+    /// Lower bound of each component of a step, n.
     pub lower: Vec<f64>,
-    /// Largest value of each component of a step.
+    /// Upper bound of each component of a step, n.
     pub upper: Vec<f64>,
-    /// Derivatives of the equalities.
+    /// Derivatives of the equalities, one row of n for each.
     pub equality_rows: Vec<f64>,
-    /// Derivatives of the inequalities.
+    /// Derivatives of the inequalities, one row of n for each.
     pub inequality_rows: Vec<f64>,
 }
 
-/// When to stop.
+/// Stopping criteria and the initial trust region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Stop when the model promises to lower F by less than this fraction of it.
+    /// Stop when the model predicts a decrease of F by less than this fraction of F.
     pub tolerance: f64,
-    /// A decrease of F below this is nothing, whatever F is.
+    /// Decreases of F below this count as zero, whatever F is.
     pub floor: f64,
-    /// Largest violation of an equality or inequality at the end.
+    /// The largest violation of an equality or inequality that counts as feasible.
     pub feasibility: f64,
-    /// Most iterations.
+    /// The largest number of iterations.
     pub iterations: u32,
-    /// The trust box at the start, in units of `scale`.
+    /// The initial half-width of the trust region, in units of `scale`.
     pub trust: f64,
 }
 
@@ -70,19 +74,19 @@ impl Default for Options {
 /// How a solve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// The model promises no further decrease.
+    /// The model predicts no further decrease.
     Converged,
-    /// No step lowers the merit any more, though the model promises one.
+    /// No step decreases the merit function, although the model predicts a decrease.
     Stalled,
-    /// The iterations were used up.
+    /// The limit on iterations was reached.
     IterationLimit,
-    /// A value was not finite.
+    /// A value was not finite, or the quadratic program could not be solved.
     NotFinite,
-    /// Equalities or inequalities could not be met.
+    /// Equalities or inequalities are violated at the end.
     Infeasible,
 }
 
-/// The end of a solve.
+/// The result of a solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Summary {
     /// F at the end.
@@ -95,7 +99,7 @@ pub struct Summary {
     pub stop: Stop,
 }
 
-/// Buffers of a solver, kept from one solve to the next with their active set.
+/// The buffers of a solver; the active set is kept from one solve to the next.
 #[derive(Debug)]
 pub struct Solver {
     local: LocalModel,
@@ -109,19 +113,19 @@ pub struct Solver {
     trial_equalities: Vec<f64>,
     trial_inequalities: Vec<f64>,
     elimination: Elimination,
-    /// How far to go along each orthonormal equality row.
+    /// The step along each orthonormal equality row that satisfies the linearised equalities.
     equality_steps: Vec<f64>,
     equality_values: Vec<f64>,
     inequality_values: Vec<f64>,
 }
 
-/// The trust box never grows beyond this many units of `scale`.
+/// The largest half-width of the trust region, in units of `scale`.
 const WIDEST: f64 = 2.0;
-/// A trust box narrower than this cannot lower anything.
+/// The half-width of the trust region below which the iteration stops.
 const NARROWEST: f64 = 1e-9;
 
 impl Solver {
-    /// Buffers for problems of this shape; `scale` is the size of a natural step in each direction.
+    /// Buffers for problems of this shape; `scale` is the typical size of a step in each direction.
     pub fn new(scale: &[f64], equalities: usize, inequalities: usize) -> Self {
         let n = scale.len();
         Self {
@@ -149,19 +153,19 @@ impl Solver {
         }
     }
 
-    /// Forgets the active set: the next solve depends on its own problem alone.
+    /// Clears the active set, so that the next solve depends on its own problem only.
     pub fn forget(&mut self) {
         self.program.forget();
     }
 
-    /// The model at the last point that was linearised.
+    /// The model at the last point that was linearised, its equality rows orthonormalised.
     pub fn local(&self) -> &LocalModel {
         &self.local
     }
 
-    /// Minimises a problem from its current point, where it ends.
+    /// Minimises a problem from its current point, and moves that point to the minimum.
     ///
-    /// Nothing is allocated.
+    /// Does not allocate.
     pub fn minimise<P: Problem>(&mut self, problem: &mut P, options: &Options) -> Summary {
         self.step.fill(0.0);
         let mut objective =
@@ -176,6 +180,8 @@ impl Solver {
         }
         let mut trust = options.trust;
         let mut penalty = 0.0_f64;
+        // Whether the current point is new and has to be linearised; a rejected step keeps the
+        // model.
         let mut fresh = true;
         while summary.iterations < options.iterations {
             summary.iterations += 1;
@@ -188,6 +194,7 @@ impl Solver {
                 summary.stop = Stop::NotFinite;
                 break;
             };
+            // The l1 merit function is exact if μ exceeds every multiplier.
             penalty = penalty.max(2.0 * self.largest_multiplier());
             let promised = self.promise();
             let infeasible = sum_violation(&self.equalities, &self.inequalities);
@@ -207,10 +214,12 @@ impl Solver {
             }
             let trial_infeasible = sum_violation(&self.trial_equalities, &self.trial_inequalities);
             let gained = objective - trial + penalty * (infeasible - trial_infeasible);
+            // Relaxed equalities are satisfied by a tenth of the way at most.
             let expected = promised + penalty * infeasible * if relaxed { 0.1 } else { 1.0 };
-            // Near the end the gain drowns in rounding; a step that costs nothing is taken.
+            // Near convergence rounding dominates the gain: a step that loses no more is accepted.
             let noise = 1e-14 * objective + options.floor;
             if gained.is_finite() && gained >= 1e-4 * expected - noise {
+                // Armijo condition with c₁ = 1e-4; the ratio of gain to prediction sets the region.
                 problem.accept();
                 fresh = true;
                 objective = trial;
@@ -230,6 +239,7 @@ impl Solver {
                 summary.stop = Stop::Converged;
                 break;
             } else {
+                // A quarter of the rejected step, which may be shorter than the region is wide.
                 trust = 0.25 * trust.min(self.step_size());
                 if trust < NARROWEST {
                     summary.stop = if violation > options.feasibility {
@@ -249,7 +259,7 @@ impl Solver {
         summary
     }
 
-    /// Makes the equality rows orthonormal, and finds how far to go along each.
+    /// Orthonormalises the equality rows and transforms the right-hand sides -c likewise.
     fn orthonormalise_equalities(&mut self) {
         self.elimination.orthonormalise(&mut self.local.equality_rows, self.step.len());
         for (step, c) in self.equality_steps.iter_mut().zip(&self.equalities) {
@@ -258,11 +268,11 @@ impl Solver {
         self.elimination.apply(&mut self.equality_steps);
     }
 
-    /// Bends a step whose trial point left the equalities back towards them, by the shortest way;
-    /// whether it did.
+    /// Second-order correction: adds the shortest step that satisfies the equalities linearised
+    /// with their values at the trial point. Returns whether the step changed.
     ///
-    /// Without this a straight step along a curved constraint is refused over and over, however
-    /// good it is (the effect of Maratos).
+    /// Without it the merit function rejects good steps along a curved constraint again and again
+    /// (the Maratos effect).
     fn bend(&mut self, feasibility: f64) -> bool {
         let off = self.trial_equalities.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
         if !off.is_finite() || off <= 0.1 * feasibility {
@@ -272,6 +282,7 @@ impl Solver {
             *value = -c;
         }
         self.elimination.apply(&mut self.equality_values);
+        // The rows are orthonormal, so the shortest step is Cᵀ·values.
         let n = self.step.len();
         for (row, along) in
             self.local.equality_rows.chunks_exact(n.max(1)).zip(&self.equality_values)
@@ -286,11 +297,11 @@ impl Solver {
         true
     }
 
-    /// Solves the quadratic program within the trust box; whether the equalities were relaxed.
-    ///
-    /// A box too narrow to reach the equalities asks for a part of the way only.
+    /// Solves the quadratic program within the trust region; returns whether its constraints were
+    /// relaxed, or `None` if it failed.
     fn propose(&mut self, trust: f64) -> Option<bool> {
         for i in 0..self.step.len() {
+            // The step 0 must stay possible, also where the point violates a bound by rounding.
             let reach = trust * self.scale[i];
             self.lower[i] = self.local.lower[i].max(-reach).min(0.0);
             self.upper[i] = self.local.upper[i].min(reach).max(0.0);
@@ -299,7 +310,9 @@ impl Solver {
         loop {
             match self.solve_program() {
                 Ok(relaxed) => return Some(relaxed),
-                // Rounding ate a weak direction: stiffen all a little and try again.
+                // A direction of small curvature was lost to rounding: add a multiple of the
+                // identity (Levenberg-Marquardt), from 1e-12 of the largest diagonal entry upwards,
+                // and retry.
                 Err(Status::NotPositiveDefinite { .. }) if ridge < 1e-3 => {
                     let n = self.step.len();
                     let hessian = &mut self.local.hessian;
@@ -312,13 +325,17 @@ impl Solver {
         }
     }
 
-    /// Solves the program as it stands; whether its rows had to be relaxed.
+    /// Solves the program with the present Hessian; returns whether its constraints were relaxed.
+    ///
+    /// Where the trust region is too small to satisfy the linearised constraints, their violation
+    /// need only be reduced by a tenth, and failing that, not at all.
     fn solve_program(&mut self) -> Result<bool, Status> {
         for share in [1.0, 0.1, 0.0] {
             for (value, full) in self.equality_values.iter_mut().zip(&self.equality_steps) {
                 *value = share * full;
             }
             for (value, g) in self.inequality_values.iter_mut().zip(&self.inequalities) {
+                // A satisfied inequality keeps its full slack.
                 *value = if *g < 0.0 { -share * g } else { -g };
             }
             let program = QuadraticProgram::bounded(
@@ -343,7 +360,7 @@ impl Solver {
         Ok(true)
     }
 
-    /// By how much the model says the step lowers F.
+    /// The decrease of F that the model predicts for the step: -(gᵀd + ½ dᵀHd).
     fn promise(&self) -> f64 {
         let n = self.step.len();
         let mut sum = 0.0;
@@ -385,8 +402,8 @@ fn sum_violation(equalities: &[f64], inequalities: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A planar arm of three unit links that reaches for a point, angles within bounds; the middle
-    /// joint may be tied to a line by an equality.
+    /// A planar arm of three unit links that reaches for a point, with bounded angles; an equality
+    /// may constrain the end of the second link to a line.
     struct Arm {
         angles: [f64; 3],
         trial: [f64; 3],

@@ -1,8 +1,8 @@
 //! Dense bounded least squares for the few dozen unknowns of a skeleton.
 //!
-//! A pose is found by minimising a sum of squares `F(q) = |r(q)|²` over coordinates with limits.
-//! Every Gauss-Newton step linearises the residual, `r(q + d) ≈ r + J d`, and what is left is a
-//! strictly convex quadratic program in the step `d`,
+//! Inverse kinematics minimises a sum of squares `F(q) = |r(q)|²` over coordinates with limits.
+//! Each Gauss-Newton step linearises the residual, `r(q + d) ≈ r + J d`, which gives a strictly
+//! convex quadratic program in the step `d`:
 //!
 //! ```text
 //! minimise   ½ dᵀ H d + gᵀ d          H = JᵀJ + damping,  g = Jᵀ r
@@ -11,13 +11,15 @@
 //!            G d ≥ h                  limits that couple coordinates
 //! ```
 //!
-//! [`quadratic`] solves it thousands of times a second: no allocation after set-up, warm start from
-//! the active set of the last call, multipliers for every constraint, and a status that says what
-//! happened. [`cholesky`] is the factorisation underneath, [`least_squares`] the loop around it.
+//! [`quadratic`] solves it thousands of times a second: without allocation after set-up,
+//! warm-started from the active set of the last call, with a Lagrange multiplier for every
+//! constraint and a status. [`cholesky`] is the factorisation that it uses, [`least_squares`] the
+//! iteration around it.
 //!
-//! The answer is the unique point with multipliers `z` (bounds), `y` (equalities), `w ≥ 0`
-//! (inequalities) such that `H d + g = z + Cᵀ y + Gᵀ w`, where `z_i ≥ 0` at a lower bound, `z_i ≤ 0`
-//! at an upper bound and `z_i = 0` between them, and `w_k = 0` unless `G_k d = h_k`.
+//! The solution is the unique feasible point that satisfies the KKT conditions: there are
+//! multipliers `z` (bounds), `y` (equalities), `w ≥ 0` (inequalities) with
+//! `H d + g = z + Cᵀ y + Gᵀ w`, where `z_i ≥ 0` at a lower bound, `z_i ≤ 0` at an upper bound and
+//! `z_i = 0` between them, and `w_k = 0` unless `G_k d = h_k`.
 //!
 //! ```
 //! use condyle_solve::quadratic::{QuadraticProgram, Workspace};

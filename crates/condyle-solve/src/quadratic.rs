@@ -2,17 +2,18 @@
 //!
 //! Two algorithms share one [`Workspace`] and one warm start:
 //!
-//! - **Bounds only** (and inequalities that turn out not to matter): block principal pivoting. The
-//!   active bounds are guessed, the free variables solved by one Cholesky factorisation, and every
-//!   variable on the wrong side changes its state at once; when that stops making progress one
-//!   variable at a time is changed by Murty's rule, which cannot cycle for a positive definite
-//!   matrix (Júdice and Pires 1994). A right guess costs one factorisation of the free block.
-//! - **With rows**: the dual active-set method of Goldfarb and Idnani (1983), with bounds treated as
-//!   unit rows. It starts from the last active set, drops what has a multiplier of the wrong sign,
-//!   and adds violated constraints one by one; it also proves infeasibility. It takes over as well
-//!   where pivoting gives up.
+//! - **Bounds only** (or with inequalities that are not active at the solution): block principal
+//!   pivoting. For a guess of the active bounds, the free variables are solved for by one Cholesky
+//!   factorisation, and every variable that violates its bound or whose multiplier has the wrong
+//!   sign changes its state at once. When that stops making progress, one variable at a time is
+//!   changed by Murty's rule, which cannot cycle for a positive definite matrix (Júdice and Pires
+//!   1994). A correct guess costs one factorisation of the free block.
+//! - **With rows**: the dual active-set method of Goldfarb and Idnani (1983), with bounds as unit
+//!   rows. It starts from the last active set, drops constraints whose multiplier has the wrong
+//!   sign, and adds violated constraints one by one; it also detects infeasibility. It is used as
+//!   well where pivoting stalls.
 //!
-//! Both count their steps and stop at a cap with [`Status::IterationLimit`].
+//! Both count their iterations and stop at a limit with [`Status::IterationLimit`].
 
 mod dual;
 mod pivoting;
@@ -26,17 +27,18 @@ pub use solution::{BoundState, Constraint, Solution, Status};
 use pivoting::Pivoting;
 use working_set::WorkingSet;
 
-/// A bound counts as violated beyond this fraction of the size of the step.
+/// A bound counts as violated beyond this fraction of the size of the step and of the bound.
 const FEASIBILITY: f64 = 1e-12;
-/// A multiplier has the wrong sign beyond this fraction of the gradient's size.
+/// A multiplier has the wrong sign beyond this fraction of the size of the gradient.
 const OPTIMALITY: f64 = 1e-12;
-/// A row is dependent on the rows before it when less than this fraction of it is new.
+/// A row is linearly dependent on the active rows if the part orthogonal to them, in the norm
+/// √(nᵀ H⁻¹ n), is below this fraction of it.
 const DEPENDENCE: f64 = 1e-10;
 
 /// The default of [`Workspace::set_consistency`].
 pub const DEFAULT_CONSISTENCY: f64 = 1e-10;
 
-/// All memory of the solver, the last solution and with it the warm start of the next.
+/// All memory of the solver, with the last solution, which is the warm start of the next call.
 ///
 /// ```
 /// use condyle_solve::quadratic::{QuadraticProgram, Status, Workspace};
@@ -64,7 +66,8 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// Allocates everything for `n` unknowns, `equalities` rows of `C` and `inequalities` rows of `G`.
+    /// Allocates all memory for `n` unknowns, `equalities` rows of `C` and `inequalities` rows of
+    /// `G`.
     ///
     /// ```
     /// let workspace = condyle_solve::quadratic::Workspace::new(29, 3, 0);
@@ -80,8 +83,8 @@ impl Workspace {
         }
     }
 
-    /// Changes the shape, as [`Workspace::new`]; settings stay. The same shape is left alone, with its
-    /// warm start; any other forgets it.
+    /// Changes the shape, as [`Workspace::new`]; settings are kept. The warm start is kept if the
+    /// shape does not change.
     ///
     /// ```
     /// let mut workspace = condyle_solve::quadratic::Workspace::new(2, 0, 0);
@@ -97,7 +100,7 @@ impl Workspace {
         }
     }
 
-    /// Unknowns, equality rows and inequality rows that the next program must have.
+    /// The numbers of unknowns, equality rows and inequality rows that the next program must have.
     ///
     /// ```
     /// assert_eq!(condyle_solve::quadratic::Workspace::new(4, 2, 1).shape(), (4, 2, 1));
@@ -107,7 +110,7 @@ impl Workspace {
         (s.d.len(), s.equality_multipliers.len(), s.inequality_multipliers.len())
     }
 
-    /// Forgets the active set, so that the next call starts cold, from no active constraint.
+    /// Clears the active set, so that the next call starts cold, with no active constraint.
     ///
     /// ```
     /// use condyle_solve::quadratic::{QuadraticProgram, Workspace};
@@ -125,13 +128,13 @@ impl Workspace {
         self.solution.active_rows.fill(false);
     }
 
-    /// Sets the residual below which constraints that depend on each other count as consistent.
+    /// Sets the residual below which linearly dependent constraints count as consistent.
     ///
-    /// An equality row that is a combination of others, `C_k = Σ_j r_j C_j`, is dropped when
-    /// `|c_k - Σ_j r_j c_j| ≤ 1e-8 (|c_k| + Σ_j |r_j c_j|) + tolerance · max_j |C_j|`, and makes the
-    /// program infeasible otherwise. In the same way a bound or inequality that the active constraints
-    /// determine may be violated by that much (with its own norm). `tolerance` is in the unit of the
-    /// unknowns; the default is [`DEFAULT_CONSISTENCY`].
+    /// An equality row that is a linear combination of others, `C_k = Σ_j r_j C_j`, is dropped if
+    /// `|c_k - Σ_j r_j c_j| ≤ 1e-8 (|c_k| + Σ_j |r_j c_j|) + tolerance · max_j |C_j|`, and makes
+    /// the program infeasible otherwise. A bound or inequality that depends linearly on the active
+    /// constraints may be violated by as much, with its own norm in place of the maximum.
+    /// `tolerance` is in the unit of the unknowns; the default is [`DEFAULT_CONSISTENCY`].
     ///
     /// ```
     /// use condyle_solve::quadratic::{QuadraticProgram, Status, Workspace};
@@ -149,7 +152,7 @@ impl Workspace {
         self.consistency = tolerance;
     }
 
-    /// Caps the iterations of one call; `None` means `100 + 10 (n + m_e + m_i)`.
+    /// Limits the iterations of one call; `None` means `100 + 10 (n + m_e + m_i)`.
     ///
     /// ```
     /// use condyle_solve::quadratic::{QuadraticProgram, Status, Workspace};
@@ -175,16 +178,17 @@ impl Workspace {
 
     /// Minimises `½ dᵀ H d + gᵀ d` within the bounds and rows of `program`, from the last active set.
     ///
-    /// Never allocates. The result depends on the program and, in the last digits and in
-    /// [`Solution::iterations`], on the active set it starts from.
+    /// Never allocates. The result depends on the program and, in its last digits and in
+    /// [`Solution::iterations`], on the initial active set.
     ///
     /// # Errors
     ///
-    /// Look at [`Solution::status`]: the vectors are the answer only if it is [`Status::Solved`].
+    /// Reported by [`Solution::status`]: the vectors are the solution only if it is
+    /// [`Status::Solved`].
     ///
     /// # Panics
     ///
-    /// If a slice of `program` does not have the length that [`Workspace::shape`] asks for.
+    /// If the length of a slice of `program` does not match [`Workspace::shape`].
     ///
     /// ```
     /// use condyle_solve::quadratic::{QuadraticProgram, Workspace};
@@ -212,7 +216,7 @@ impl Workspace {
         solution.status = Status::Solved;
         for i in 0..n {
             let (lower, upper) = (program.lower[i], program.upper[i]);
-            // False for NaN.
+            // Written so that it is false for NaN.
             let possible = lower <= upper && lower < f64::INFINITY && upper > f64::NEG_INFINITY;
             if !possible {
                 solution.status = Status::Infeasible;
@@ -220,6 +224,7 @@ impl Workspace {
                 solution.conflict.push(Constraint::Upper(i));
                 return &self.solution;
             }
+            // A state of the last call is kept where its bound still exists.
             solution.bounds[i] = match solution.bounds[i] {
                 _ if lower == upper => BoundState::Fixed,
                 BoundState::Lower if lower > f64::NEG_INFINITY => BoundState::Lower,
@@ -228,8 +233,8 @@ impl Workspace {
             };
         }
 
-        // Without equalities and active rows the bounds alone may decide: a minimiser over fewer
-        // constraints that satisfies the others is the minimiser.
+        // Without equalities and active rows, try the bounds alone: a minimiser over a subset of
+        // the constraints that satisfies the others is the minimiser.
         let bounds_alone = equalities == 0 && !solution.active_rows.contains(&true);
         let done = bounds_alone
             && match pivoting::solve(program, &mut self.pivoting, solution, limit) {
@@ -281,7 +286,7 @@ mod tests {
             assert_eq!(pivoted.status, Status::Solved);
             assert!(pivoted.bounds.iter().any(|&b| b != BoundState::Free));
 
-            // The dual method from nothing, and from states that pivoting could have stalled in.
+            // The dual method from no active bound, and from states in which pivoting could stall.
             let starts = [BoundState::Free, BoundState::Lower, BoundState::Upper];
             for start in starts {
                 let mut solution = Solution::new(n, 0, 0);

@@ -1,4 +1,4 @@
-//! A call of the solver allocates nothing, whatever its path. Alone in its binary, because the
+//! The solver does not allocate on any code path. This test is alone in its binary because the
 //! allocator counts for the whole process.
 
 use std::alloc::System;
@@ -9,8 +9,9 @@ use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 #[global_allocator]
 static GLOBAL: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Allocations and reallocations during `call`: the least of five attempts, since the thread of the
-/// test harness may allocate meanwhile, and what the solver allocates comes back every time.
+/// Allocations and reallocations during `call`: the minimum of five attempts, because the thread of
+/// the test harness may allocate at the same time, while the solver would allocate in every
+/// attempt.
 fn allocations(mut call: impl FnMut()) -> usize {
     let attempt = |_| {
         let region = Region::new(GLOBAL);
@@ -25,8 +26,8 @@ fn allocations(mut call: impl FnMut()) -> usize {
 fn solving_allocates_nothing() {
     assert!(allocations(|| drop(std::hint::black_box(vec![1_u8; 64]))) >= 1, "the counter counts");
 
-    // Tridiagonal (-1, 2.5, -1): diagonally dominant. A gradient of alternating sign and growing
-    // size makes bounds of both sides active.
+    // Tridiagonal (-1, 2.5, -1): diagonally dominant. A gradient of alternating sign and increasing
+    // size makes lower and upper bounds active.
     let n = 30;
     let mut hessian = vec![0.0; n * n];
     for i in 0..n {
@@ -61,7 +62,7 @@ fn solving_allocates_nothing() {
     let count = allocations(|| {
         for gradient in [&gradient, &flipped, &gradient] {
             expect(gradient, &[0.5, 0.5], &[3.0, -4.0], Status::Solved);
-            // The two equalities disagree; then the inequalities add up to 1 > 0.5.
+            // The two equalities contradict; then the inequalities add up to 1 > 0.5.
             expect(gradient, &[0.5, 0.6], &[3.0, -4.0], Status::Infeasible);
             expect(gradient, &[0.5, 0.5], &[3.0, -2.0], Status::Infeasible);
         }

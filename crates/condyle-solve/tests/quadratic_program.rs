@@ -1,5 +1,5 @@
-//! The solver against a slow and obvious twin, against the optimality conditions, and against
-//! programs whose answer is known.
+//! The solver against a slow reference solver, against the KKT conditions, and against programs
+//! with a known solution.
 
 mod common;
 
@@ -51,7 +51,7 @@ fn conflicts_are_named() {
     let (none, low, high) = ((&[][..], &[][..]), [-FREE; 2], [FREE; 2]);
     assert_eq!(solve(&[0.0, 2.0], &[1.0; 2], none, none), [Lower(1), Upper(1)]);
     assert_eq!(solve(&[0.0, f64::NAN], &[1.0; 2], none, none), [Lower(1), Upper(1)]);
-    // d₀ + d₁ ≥ 3 with d ≤ 1; the second row, d₀ ≥ -5, has no part in it.
+    // d₀ + d₁ ≥ 3 with d ≤ 1; the second row, d₀ ≥ -5, is not part of the conflict.
     assert_eq!(
         solve(&low, &[1.0; 2], none, (&[1.0, 1.0, 1.0, 0.0], &[3.0, -5.0])),
         [Upper(0), Upper(1), Inequality(0)]
@@ -78,8 +78,8 @@ fn conflicts_are_named() {
 
 #[test]
 fn a_row_of_rounding_noise_is_no_constraint() {
-    // A planar loop in space: the third row is zero but for rounding, and taken at its word it would
-    // demand d₁ = 3. The first row alone leaves d = (1, 0).
+    // A planar loop in space: the third row is zero except for rounding, and taken literally it
+    // would require d₁ = 3. The first row alone gives d = (1, 0).
     let hessian = [1.0, 0.0, 0.0, 1.0];
     let program = QuadraticProgram::bounded(&hessian, &[0.0; 2], &[-FREE; 2], &[FREE; 2])
         .with_equalities(&[1.0, 0.0, 2.0, 0.0, 0.0, 1e-17], &[1.0, 2.0, 3e-17]);
@@ -124,7 +124,7 @@ fn what_cannot_be_solved_is_said() {
 
 #[test]
 fn a_variable_held_by_its_bounds_needs_no_curvature() {
-    // H = [1 1; 1 1] is singular, but with d₁ fixed at 2 what is left is ½ d₀² + 2 d₀ - d₀.
+    // H = [1 1; 1 1] is singular, but with d₁ fixed at 2 the objective is ½ d₀² + 2 d₀ - d₀.
     let program =
         QuadraticProgram::bounded(&[1.0, 0.0, 1.0, 1.0], &[-1.0, 0.0], &[-FREE, 2.0], &[FREE, 2.0]);
     let mut workspace = Workspace::new(2, 0, 0);
@@ -177,7 +177,7 @@ proptest! {
             };
             assert_optimal(&instance, solution);
             let value = solution.objective(&instance.program());
-            // The twin solves by elimination: error about 1e-16 / damping, here within 1e-7.
+            // The reference solves by elimination: error about 1e-16 / damping, here within 1e-7.
             prop_assert!((value - objective).abs() <= 1e-7 * (1.0 + objective.abs()), "{}", start);
             if damping > 0.1 {
                 for (x, expected) in solution.d().iter().zip(d) {
@@ -187,7 +187,7 @@ proptest! {
         }
     }
 
-    /// The conditions determine the minimiser, whatever the size.
+    /// The KKT conditions determine the minimiser, for any size.
     #[test]
     fn satisfies_the_optimality_conditions(
         seed in any::<u64>(), n in 1_usize..=40, equalities in 0_usize..=4,
@@ -205,9 +205,10 @@ proptest! {
         assert_optimal(&other, workspace.solve(&other.program()));
     }
 
-    /// As in Gauss-Newton: the same constraints, another gradient. Where a vertex is degenerate, more
-    /// than one active set is right to 1e-12 and nearly parallel constraints magnify the difference, so
-    /// here inequalities do not meet by construction; the other properties cover that.
+    /// As in Gauss-Newton: the same constraints, another gradient. At a degenerate vertex more than
+    /// one active set is optimal to 1e-12, and nearly parallel constraints amplify the difference;
+    /// here the inequalities are kept apart by construction, and the other properties cover
+    /// degeneracy.
     #[test]
     fn warm_and_cold_agree(
         seed in any::<u64>(), n in 1_usize..=30, equalities in 0_usize..=3,
@@ -240,8 +241,8 @@ proptest! {
         }
     }
 
-    /// Farkas: a row that is minus a positive combination of others, with a limit that exceeds
-    /// theirs, contradicts exactly those.
+    /// Farkas: a row that is minus a positive combination of others, with a limit above the one
+    /// that they imply, contradicts exactly those.
     #[test]
     fn a_contradiction_of_three_rows_is_found(
         seed in any::<u64>(), n in 3_usize..=30, gap in 1e-6..1.0,

@@ -1,11 +1,12 @@
-//! Functions of one scalar, and of several: how a coordinate drives a motion.
+//! Functions of one scalar and of several, by which coordinates drive motions.
 //!
-//! A knee's tibia glides by a spline of its flexion, a patella follows a polynomial, a finger's
-//! last joint turns by two thirds of the one before it. Every such law is a [`Function`]: a
-//! [`Curve`] times a constant factor. Laws of several coordinates are a [`FunctionOfSeveral`].
+//! The tibia translates by a spline of knee flexion, the patella follows a polynomial, the last
+//! joint of a finger rotates by two thirds of the angle of the joint before it. Each of these is a
+//! [`Function`]: a [`Curve`] times a constant factor. Functions of several coordinates are a
+//! [`FunctionOfSeveral`].
 //!
-//! Each answers with its value and its exact derivative, and is applied to any
-//! [`Scalar`] through [`Scalar::chain`].
+//! A [`Function`] returns its value and its exact derivative, and is applied to any [`Scalar`]
+//! through [`Scalar::chain`].
 
 mod piecewise_linear;
 mod polynomial;
@@ -29,7 +30,7 @@ pub struct Function {
     pub curve: Curve,
 }
 
-/// The shapes that a [`Function`] can have.
+/// The curve of a [`Function`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Curve {
     /// The same value everywhere.
@@ -43,9 +44,9 @@ pub enum Curve {
     },
     /// A polynomial.
     Polynomial(Polynomial),
-    /// Straight lines between knots.
+    /// Linear interpolation between knots.
     PiecewiseLinear(PiecewiseLinear),
-    /// The interpolating cubic of SIMM and OpenSim.
+    /// The interpolating cubic spline of SIMM and OpenSim.
     SimmSpline(SimmSpline),
 }
 
@@ -96,7 +97,8 @@ impl Function {
         x.chain(|x| self.value_and_slope(x))
     }
 
-    /// The value, if it is the same everywhere.
+    /// The value, if the function is known to be constant: constant or linear with slope 0, or with
+    /// factor 0.
     pub fn as_constant(&self) -> Option<f64> {
         match &self.curve {
             _ if self.factor == 0.0 => Some(0.0),
@@ -106,7 +108,7 @@ impl Function {
         }
     }
 
-    /// Slope and intercept, if the graph is one straight line.
+    /// Slope and intercept, if the function is given as linear or as constant.
     pub fn as_linear(&self) -> Option<(f64, f64)> {
         match &self.curve {
             Curve::Linear { slope, intercept } => {
@@ -116,7 +118,7 @@ impl Function {
         }
     }
 
-    /// The interval that the knots cover; `None` for a function given by one formula everywhere.
+    /// The interval that the knots cover; `None` for a curve without knots.
     pub fn domain(&self) -> Option<(f64, f64)> {
         match &self.curve {
             Curve::PiecewiseLinear(p) => Some(p.domain()),
@@ -126,11 +128,11 @@ impl Function {
     }
 }
 
-/// Knots that no curve can pass through.
+/// Why a list of knots defines no curve.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum KnotError {
-    /// There is not a single knot.
+    /// No knots.
     Empty,
     /// The lists of arguments and values differ in length.
     Lengths {
@@ -139,13 +141,13 @@ pub enum KnotError {
         /// Number of values.
         y: usize,
     },
-    /// An argument is not above the one before it.
+    /// An argument is not above the previous one.
     NotIncreasing {
         /// Position of the knot, from 0.
         index: usize,
-        /// The argument before.
+        /// The previous argument.
         before: f64,
-        /// Its own argument.
+        /// The argument of this knot.
         here: f64,
     },
     /// A number is infinite or not a number.
@@ -174,7 +176,7 @@ impl fmt::Display for KnotError {
 
 impl std::error::Error for KnotError {}
 
-/// Checks what every curve through knots requires; `strictly` forbids equal arguments.
+/// Checks the requirements common to all curves through knots; `strictly` forbids equal arguments.
 fn check_knots(x: &[f64], y: &[f64], strictly: bool) -> Result<(), KnotError> {
     if x.len() != y.len() {
         return Err(KnotError::Lengths { x: x.len(), y: y.len() });
@@ -194,7 +196,9 @@ fn check_knots(x: &[f64], y: &[f64], strictly: bool) -> Result<(), KnotError> {
     }
 }
 
-/// The number of the interval that holds `at`, given at least two increasing knots.
+/// The index of the interval that contains `at`, given at least two increasing knots.
+///
+/// The first and last intervals extend to infinity; a knot belongs to the interval to its right.
 #[inline]
 fn interval(x: &[f64], at: f64) -> usize {
     x[1..x.len() - 1].partition_point(|&knot| knot <= at)

@@ -1,10 +1,10 @@
-//! Straight lines between knots.
+//! Linear interpolation between knots.
 
 use super::{KnotError, check_knots, interval};
 
-/// Straight lines between knots, going on with the end slopes outside them.
+/// Linear interpolation between knots, extrapolated with the end slopes.
 ///
-/// Two knots at the same argument make a step. At a knot the slope is that of the line to its
+/// Two knots at the same argument make a step. At a knot the slope is that of the segment to its
 /// right.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PiecewiseLinear {
@@ -13,7 +13,7 @@ pub struct PiecewiseLinear {
 }
 
 impl PiecewiseLinear {
-    /// The lines through the knots (x, y), given with x not decreasing.
+    /// The interpolation through the knots (x, y), with x not decreasing.
     ///
     /// # Errors
     /// [`KnotError`] for no knots, lists of different length, decreasing or non-finite numbers.
@@ -38,6 +38,7 @@ impl PiecewiseLinear {
         }
         let i = interval(&self.x, at);
         let width = self.x[i + 1] - self.x[i];
+        // Only for a step at the first or the last knot; beyond it the value stays constant.
         if width == 0.0 {
             return (self.y[if at < self.x[i] { i } else { i + 1 }], 0.0);
         }

@@ -3,17 +3,17 @@
 /// A polynomial, such as the knee translations of Walker et al. 1988.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polynomial {
-    /// Coefficients, that of the constant term first.
+    /// Coefficients, the constant term first.
     ascending: Vec<f64>,
 }
 
 impl Polynomial {
-    /// The polynomial c0 + c1·x + c2·x² + …; no coefficients give the zero polynomial.
+    /// The polynomial c0 + c1·x + c2·x² + …; the zero polynomial for no coefficients.
     pub fn from_ascending(coefficients: Vec<f64>) -> Self {
         Self { ascending: coefficients }
     }
 
-    /// The polynomial whose list begins with the highest power, as `.osim` files write it.
+    /// The polynomial whose coefficients begin with the highest power, as in `.osim` files.
     ///
     /// ```
     /// use condyle_math::function::Polynomial;
@@ -25,12 +25,12 @@ impl Polynomial {
         Self { ascending: coefficients }
     }
 
-    /// The coefficients, that of the constant term first.
+    /// The coefficients, the constant term first.
     pub fn ascending(&self) -> &[f64] {
         &self.ascending
     }
 
-    /// Value and derivative at `x`, by Horner's rule.
+    /// Value and derivative at `x`, by Horner's scheme.
     #[inline]
     pub fn value_and_slope(&self, x: f64) -> (f64, f64) {
         self.ascending

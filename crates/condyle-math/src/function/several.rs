@@ -2,15 +2,16 @@
 
 use crate::Scalar;
 
-/// A law that makes one number of several, such as a vertebra that follows three trunk angles.
+/// A scalar function of several scalars, such as the angle of a vertebra as a function of three
+/// trunk angles.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FunctionOfSeveral {
-    /// `intercept + Σ slopeᵢ · xᵢ`: OpenSim's coupler of several drivers, and what a regression
-    /// over coordinates learns (Pronost et al. 2010, equation 2).
+    /// `intercept + Σ slopeᵢ · xᵢ`: OpenSim's coordinate coupler of several drivers, and the result
+    /// of a linear regression over coordinates (Pronost et al. 2010, equation 2).
     Linear {
         /// One slope for each argument.
         slopes: Vec<f64>,
-        /// Value where all arguments are 0.
+        /// Value at 0.
         intercept: f64,
     },
     /// A polynomial of several variables.
@@ -26,7 +27,8 @@ impl FunctionOfSeveral {
         }
     }
 
-    /// The value at `x` (one number for each argument; missing ones count as 0).
+    /// The value at `x`, one number for each argument. For a linear function missing arguments
+    /// count as 0.
     #[inline]
     pub fn apply<S: Scalar>(&self, x: &[S]) -> S {
         match self {
@@ -50,14 +52,15 @@ pub struct MultivariatePolynomial {
 }
 
 impl MultivariatePolynomial {
-    /// All monomials up to a total order, the last variable's power running fastest.
+    /// A polynomial of all monomials up to a total order, the exponent of the last variable varying
+    /// fastest.
     ///
     /// For two variables and order 2 the terms are 1, y, y², x, x·y, x². This is the order of
     /// OpenSim's `MultivariatePolynomialFunction`; missing coefficients are zero.
     ///
     /// # Errors
-    /// The number of coefficients that this dimension and order take, if more were given or if the
-    /// polynomial would have more than a million terms.
+    /// The number of coefficients for this dimension and order, if more are given, if that number
+    /// is above a million, if the dimension is 0 or above 16, or if the order is above 64.
     ///
     /// ```
     /// use condyle_math::function::MultivariatePolynomial;
@@ -70,7 +73,8 @@ impl MultivariatePolynomial {
         order: usize,
         coefficients: &[f64],
     ) -> Result<Self, usize> {
-        // Number of monomials: binomial(dimension + order, order).
+        // The number of monomials is binomial(dimension + order, order). Every partial product is
+        // itself a binomial coefficient, so each division is exact.
         let mut count: usize = 1;
         for k in 1..=order.min(64) {
             count = count.saturating_mul(dimension.saturating_add(k)) / k;
@@ -106,7 +110,7 @@ impl MultivariatePolynomial {
         self.dimension
     }
 
-    /// The highest total power of a term that is given.
+    /// The highest total power of a given term, terms with coefficient 0 included.
     pub fn order(&self) -> usize {
         let total = |powers: &[u8]| powers.iter().map(|&p| usize::from(p)).sum();
         self.exponents.chunks_exact(self.dimension).map(total).max().unwrap_or(0)

@@ -1,13 +1,14 @@
-//! The interpolating cubic of SIMM and OpenSim.
+//! The interpolating cubic spline of SIMM and OpenSim.
 
 use super::{KnotError, check_knots, interval};
 
-/// A cubic through its knots, as SIMM and OpenSim compute it.
+/// The cubic spline through knots that SIMM and OpenSim compute.
 ///
-/// Twice continuously differentiable inside; at each end the *third* derivative equals that of the
-/// cubic through the four outermost knots, which is the spline of Forsythe, Malcolm and Moler
-/// (*Computer Methods for Mathematical Computations*, 1977, chapter 4) and not the natural one.
-/// Outside the knots it goes on straight with the end slope. Two knots make a line, one a constant.
+/// It is twice continuously differentiable inside. At each end the *third* derivative equals that
+/// of the cubic through the four outermost knots: this is the spline of Forsythe, Malcolm and Moler
+/// (*Computer Methods for Mathematical Computations*, 1977, chapter 4), not the natural spline.
+/// Outside the knots it is extrapolated linearly with the end slope. Three knots make a parabola,
+/// two a line, one a constant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimmSpline {
     x: Vec<f64>,
@@ -16,7 +17,7 @@ pub struct SimmSpline {
 }
 
 impl SimmSpline {
-    /// The spline through the knots (x, y), given with x increasing.
+    /// The spline through the knots (x, y), with x increasing.
     ///
     /// # Errors
     /// [`KnotError`] for no knots, lists of different length, non-increasing or non-finite numbers.
@@ -28,8 +29,9 @@ impl SimmSpline {
             let cubic = y.iter().map(|&y| [y, slope, 0.0, 0.0]).collect();
             return Ok(Self { x, cubic });
         }
-        // Unknown: sigma, a sixth of the second derivative at each knot. Interior rows ask for a
-        // continuous slope; the end rows for the third derivative of the outermost cubic.
+        // The unknowns are sigma, a sixth of the second derivative at each knot. The system is
+        // symmetric and tridiagonal, with the widths beside the diagonal. An interior row makes the
+        // slope continuous, an end row sets the third derivative: (σ₁ - σ₀)/h₀ is a sixth of it.
         let width: Vec<f64> = x.windows(2).map(|w| w[1] - w[0]).collect();
         let chord: Vec<f64> = (0..n - 1).map(|i| (y[i + 1] - y[i]) / width[i]).collect();
         let mut diagonal = vec![0.0; n];
@@ -41,12 +43,15 @@ impl SimmSpline {
         diagonal[0] = -width[0];
         diagonal[n - 1] = -width[n - 2];
         if n > 3 {
-            // Third divided differences of the first and of the last four knots.
+            // Third divided differences of the first and of the last four knots, each a sixth of
+            // the third derivative of the cubic through them. With three knots it is 0: a parabola.
             let second = |i: usize| (chord[i + 1] - chord[i]) / (x[i + 2] - x[i]);
             let third = |i: usize| (second(i + 1) - second(i)) / (x[i + 3] - x[i]);
             sigma[0] = width[0] * width[0] * third(0);
             sigma[n - 1] = -width[n - 2] * width[n - 2] * third(n - 4);
         }
+        // Gaussian elimination without pivoting. No pivot is 0: the first is -h₀, those between
+        // stay above 2·(hᵢ₋₁ + hᵢ) - hᵢ₋₁, and the last stays below -h of the last interval.
         for i in 1..n {
             let ratio = width[i - 1] / diagonal[i - 1];
             diagonal[i] -= ratio * width[i - 1];
@@ -56,12 +61,14 @@ impl SimmSpline {
         for i in (0..n - 1).rev() {
             sigma[i] = (sigma[i] - width[i] * sigma[i + 1]) / diagonal[i];
         }
+        // y + t·b + t²·c + t³·d with c = 3σᵢ and d = (σᵢ₊₁ - σᵢ)/hᵢ; b makes it reach y[i + 1].
         let mut cubic: Vec<[f64; 4]> = (0..n - 1)
             .map(|i| {
                 let (s, t) = (sigma[i], sigma[i + 1]);
                 [y[i], chord[i] - width[i] * (t + 2.0 * s), 3.0 * s, (t - s) / width[i]]
             })
             .collect();
+        // The last entry is only read for the linear extrapolation to the right.
         let end_slope = chord[n - 2] + width[n - 2] * (sigma[n - 2] + 2.0 * sigma[n - 1]);
         cubic.push([y[n - 1], end_slope, 0.0, 0.0]);
         Ok(Self { x, cubic })
@@ -85,11 +92,11 @@ impl SimmSpline {
         (y + t * (b + t * (c + t * d)), b + t * (2.0 * c + t * 3.0 * d))
     }
 
-    /// Value and first three derivatives at `at`; at a knot those of the piece that begins there.
+    /// Value and first three derivatives at `at`; at a knot those of the interval to its right.
     ///
     /// ```
     /// use condyle_math::function::SimmSpline;
-    /// // Through four points of x³ it is x³: 8, 12, 12, 6 at 2.
+    /// // Through four points of x³ the spline is x³: 8, 12, 12, 6 at 2.
     /// let cube = SimmSpline::new(vec![0.0, 1.0, 2.5, 3.0], vec![0.0, 1.0, 15.625, 27.0]).unwrap();
     /// let exact = [8.0, 12.0, 12.0, 6.0];
     /// assert!(cube.derivatives(2.0).iter().zip(exact).all(|(a, b)| (a - b).abs() < 1e-12));
@@ -148,8 +155,8 @@ mod tests {
 
     #[test]
     fn knee_golden_values() {
-        // Degrees, forward mm, up mm: evaluated with the published end condition; -140 lies outside
-        // the knots, and at -110 a natural spline would be 0.14 mm off.
+        // Degrees, forward mm, up mm, evaluated with the published end condition. -140 is outside
+        // the knots; at -110 a natural spline would differ by 0.14 mm.
         let golden = [
             (-140.0, -9.645639, -427.95950),
             (-90.0, 3.258752, -413.99220),
@@ -174,7 +181,8 @@ mod tests {
 
     #[test]
     fn a_cubic_is_reproduced_exactly() {
-        // The end condition is exact for cubics: the spline through one is the cubic itself.
+        // The end condition is exact for cubics: the spline through points of a cubic is that
+        // cubic.
         let f = |x: f64| 0.3 - 1.1 * x + 0.4 * x * x + 0.9 * x * x * x;
         let x = vec![-1.0, -0.3, 0.2, 0.9, 1.4];
         let spline = SimmSpline::new(x.clone(), x.iter().map(|&x| f(x)).collect()).unwrap();

@@ -3,7 +3,8 @@
 use super::Source;
 use condyle_math::function::FunctionOfSeveral;
 
-/// One number that follows several: a vertebra's flexion from the three angles of the trunk.
+/// One scalar as a function of several: for example the flexion of a vertebra from the three angles
+/// of the trunk.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Combine {
     /// The arguments, as many as the function takes.

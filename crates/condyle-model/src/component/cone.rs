@@ -1,62 +1,63 @@
-//! The angles of a ball joint, or its orientation, held inside a joint cone (Shao & Ng-Thow-Hing
+//! The angles of a ball joint, or its orientation, limited by a joint cone (Shao & Ng-Thow-Hing
 //! 2003, section 4.6).
 //!
-//! The angles make R = R(a₁, θ₁)·R(a₂, θ₂)·R(a₃, θ₃); the [`Cone`] judges where R carries the bone and
-//! how it turns about itself. In posed mode illegal angles become those of the nearest legal rotation
-//! (or of the one towards rest), so that a [`Pivot`](super::Pivot) after the cone takes its centre at
-//! the legal angle. Of the two triples of angles that make a rotation the one nearest to what was
-//! asked for is taken. In open mode the angles pass, and up to three rows say how far inside they are:
-//! the swing from the boundary, the twist from its lower and from its upper bound.
+//! The angles give R = R(a₁, θ₁)·R(a₂, θ₂)·R(a₃, θ₃), and the [`Cone`] limits its swing and twist.
+//! In posed mode illegal angles are replaced by those of the legal rotation that the cone's
+//! projection gives, so that a [`Pivot`](super::Pivot) after the cone has its centre at the legal
+//! angle. Of the two triples of angles of a rotation the one nearest to the requested angles is
+//! used. In open mode the angles pass unchanged, and up to three limit rows are computed: the
+//! distance of the direction from the boundary, and those of the twist from its lower and its upper
+//! bound.
 //!
 //! The second axis must be perpendicular to both others: then every rotation has angles,
 //!
 //! ```text
 //! w = R·a₃,  λ = angle from a₁ to a₃ about a₂
-//! cos(θ₂ + λ) = w·a₁,  θ₁ = atan2(w·a₂, -w·(a₁ × a₂))·sign,  θ₃ = turn of a₂ left over
+//! cos(θ₂ + λ) = w·a₁,  θ₁ = atan2(±w·a₂, ∓w·(a₁ × a₂)),  θ₃ = the remaining rotation about a₃
 //! ```
 //!
-//! With two angles and no third the bone only swings: the rest direction takes the place of a₃.
+//! With two angles the bone has no third rotation: the rest direction is used for a₃.
 //!
-//! Kinks: in posed mode at the boundary. There the derivative of held angles is taken as 0; solvers
-//! work in open mode.
+//! Kinks: in posed mode at the boundary. The derivative of moved angles is taken as 0; solvers use
+//! open mode.
 
 use super::Source;
 use crate::limit::Cone;
 use condyle_math::{Mat3, Quat, Scalar, Vec3};
 use std::f64::consts::TAU;
 
-/// A ball joint that stays inside a cone.
+/// A ball joint limited by a cone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointCone {
-    /// What is held.
+    /// The scalars or the orientation that are limited.
     pub of: Swinging,
-    /// Inside what.
+    /// The limit.
     pub cone: Cone,
 }
 
-/// What a [`JointCone`] holds.
+/// The numbers that a [`JointCone`] limits.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Swinging {
-    /// Three angles in radians and their axes, in the order of the product; the lengths of axes are
-    /// normalised when the model is built.
+    /// Three angles in radians and their axes, in the order of the product; axes are normalised
+    /// when the model is built.
     Angles([Source; 3], [Vec3; 3]),
-    /// Two angles and their axes: the bone does not turn about itself.
+    /// Two angles in radians and their axes: the bone only swings.
     Directions([Source; 2], [Vec3; 2]),
     /// A unit quaternion.
     Orientation(Source),
 }
 
-/// How one row of a cone changes: its value, and its slope along each angle or direction.
+/// One limit row of a cone: its value, and its derivative along each angle or tangent.
 pub(crate) type ConeRow = (f64, [f64; 3]);
 
 impl JointCone {
-    /// How many rows it has in open mode.
+    /// The number of limit rows.
     pub fn rows(&self) -> usize {
         let twisting = !matches!(self.of, Swinging::Directions(..));
         if twisting && self.cone.twist_at_rest().is_some() { 3 } else { 1 }
     }
 
-    /// The axes as three: the rest direction stands for a third that is not there.
+    /// The three axes, with the rest direction as third for two angles; `None` for an orientation.
     fn axes(&self) -> Option<[Vec3; 3]> {
         match &self.of {
             Swinging::Angles(_, axes) => Some(*axes),
@@ -65,7 +66,7 @@ impl JointCone {
         }
     }
 
-    /// The sine of the angle by which the second axis misses being perpendicular to the others.
+    /// The sine of the larger deviation of the second axis from perpendicular to the others.
     pub fn obliqueness(&self) -> f64 {
         self.axes().map_or(0.0, |axes| {
             let [a, b, c] = axes.map(Vec3::normalized);
@@ -74,7 +75,7 @@ impl JointCone {
         })
     }
 
-    /// Gives all axes the length 1.
+    /// Normalises all axes.
     pub(crate) fn normalise(&mut self) {
         match &mut self.of {
             Swinging::Angles(_, axes) => *axes = axes.map(Vec3::normalized),
@@ -83,7 +84,8 @@ impl JointCone {
         }
     }
 
-    /// The rotation of these numbers, with the axis about which each turns it in the parent.
+    /// The rotation of these numbers, and for each angle (or tangent of the orientation) the axis
+    /// in the parent about which it rotates.
     fn rotation(&self, numbers: &[f64]) -> (Mat3, [Vec3; 3]) {
         let Some(axes) = self.axes() else {
             let q: [f64; 4] = std::array::from_fn(|i| numbers[i]);
@@ -99,11 +101,11 @@ impl JointCone {
         (turned, moving)
     }
 
-    /// How near these numbers (radians, or x, y, z, w) are to where what they are moved to jumps, in
-    /// radians; infinite where they are legal.
+    /// A measure, in radians, of the distance of these numbers (angles in radians, or x, y, z, w)
+    /// to the nearest ones where their legal numbers are discontinuous; infinite if they are legal.
     ///
     /// # Panics
-    /// If there are fewer of them than it has inputs.
+    /// If there are fewer numbers than inputs.
     pub fn margin(&self, numbers: &[f64]) -> f64 {
         let rotation = self.turned(numbers);
         if let Swinging::Directions(..) = self.of {
@@ -116,7 +118,7 @@ impl JointCone {
         self.cone.legal(rotation).margin
     }
 
-    /// The rotation of these numbers alone.
+    /// The rotation of these numbers.
     fn turned(&self, numbers: &[f64]) -> Mat3 {
         let Some(axes) = self.axes() else { return self.rotation(numbers).0 };
         let turn = |i: usize| Mat3::rotation_about(axes[i], Scalar::sin_cos(numbers[i]));
@@ -124,7 +126,7 @@ impl JointCone {
         if numbers.len() > 2 { swing * turn(2) } else { swing }
     }
 
-    /// The legal numbers for those asked for: `None` if they are legal.
+    /// The legal numbers for the requested ones; `None` if those are legal.
     pub(crate) fn legal(&self, asked: &[f64]) -> Option<[f64; 4]> {
         let rotation = self.turned(asked);
         if let Swinging::Directions(..) = self.of {
@@ -141,7 +143,7 @@ impl JointCone {
         Some(match self.axes() {
             Some([.., third]) => self.angles(legal.rotation * third, Some(legal.rotation), asked),
             None => {
-                // Of q and -q the one nearer to what was asked.
+                // Of q and -q the one nearer to the requested quaternion.
                 let q = Quat::from_mat3(legal.rotation).to_array();
                 let same: f64 = q.iter().zip(asked).map(|(a, b)| a * b).sum();
                 if same < 0.0 { q.map(|x| -x) } else { q }
@@ -149,22 +151,27 @@ impl JointCone {
         })
     }
 
-    /// The angles that carry the third axis to `w` (and make `rotation`), nearest to those asked for.
+    /// The angles that rotate the third axis to `w` (and give `rotation`), nearest to the requested
+    /// ones.
     fn angles(&self, w: Vec3, rotation: Option<Mat3>, asked: &[f64]) -> [f64; 4] {
         let Some([a, b, c]) = self.axes() else { return [0.0, 0.0, 0.0, 1.0] };
+        // a, b and a × b are a right-handed basis, because b is perpendicular to a.
         let beside = a.cross(b);
         let lead = b.dot(a.cross(c)).atan2(a.dot(c));
         let (along, up, side) = (w.dot(a), w.dot(b), w.dot(beside));
         let sine = up.hypot(side);
         let near = |angle: f64, asked: f64| angle - ((angle - asked) / TAU).round() * TAU;
         let solve = |sign: f64| {
-            // Where the first axis and the third fall together only their sum is known.
+            // If w is along the first axis, that angle is undetermined (gimbal lock): the requested
+            // one is kept.
             let first = if sine > 1e-9 { (sign * up).atan2(-sign * side) } else { asked[0] };
             let second = (sign * sine).atan2(along) - lead;
             let mut found = [near(first, asked[0]), near(second, asked[1]), 0.0, 0.0];
             if let Some(rotation) = rotation {
                 let swung = Mat3::rotation_about(a, first.sin_cos())
                     * Mat3::rotation_about(b, second.sin_cos());
+                // The rotation that remains is about c, which is perpendicular to b: its angle is
+                // that from b to the image of b.
                 let left = swung.transpose() * rotation * b;
                 found[2] = near(c.dot(b.cross(left)).atan2(b.dot(left)), asked[2]);
             }
@@ -175,9 +182,10 @@ impl JointCone {
         if other_far < far { other } else { found }
     }
 
-    /// Slopes along the directions of an orientation as slopes along its four stored numbers.
+    /// Converts derivatives along the tangents of an orientation to derivatives along its four
+    /// stored numbers; angles pass unchanged.
     ///
-    /// δ = 2·vec(q⁻¹·q̇)/|q|², so s·δ = 2·((w·s - s × v)·v̇ - (s·v)·ẇ)/|q|².
+    /// δ = 2·vec(q*·q̇)/|q|², with q* the conjugate, so s·δ = 2·((w·s - s × v)·v̇ - (s·v)·ẇ)/|q|².
     pub(crate) fn stored_slopes(&self, numbers: &[f64], s: [f64; 3]) -> [f64; 4] {
         if !matches!(self.of, Swinging::Orientation(_)) {
             return [s[0], s[1], s[2], 0.0];
@@ -189,7 +197,7 @@ impl JointCone {
         [along.x, along.y, along.z, -2.0 * s.dot(v) / square]
     }
 
-    /// The rows of open mode, [`JointCone::rows`] of them, with their slopes.
+    /// The limit rows with their derivatives; the first [`JointCone::rows`] of the three are used.
     pub(crate) fn open_rows(&self, numbers: &[f64]) -> [ConeRow; 3] {
         let (rotation, moving) = self.rotation(numbers);
         self.cone.rows(rotation).map(|(value, along)| (value, moving.map(|axis| along.dot(axis))))
@@ -238,7 +246,8 @@ mod tests {
             }
         }
         assert_eq!(limit.legal(&[0.3, 0.2, 0.1]), None);
-        // A plain hinge motion beyond the cone stops at its rim: 0.7 rad less the sagitta of a 24-gon.
+        // A hinge motion beyond the cone stops at its boundary: 0.7 rad less the sagitta of a
+        // 24-gon.
         let [first, second, ..] = limit.legal(&[1.5, 0.0, 0.0]).unwrap();
         assert!((0.69..=0.7).contains(&first) && second.abs() < 1e-9, "{first} {second}");
     }

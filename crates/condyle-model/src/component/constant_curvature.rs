@@ -1,14 +1,15 @@
-//! The end of an arc of fixed length, bent by two angles and twisted by a third.
+//! The end of a circular arc of fixed length, bent by two angles and twisted by a third.
 //!
-//! R = Rx(α)·Rz(β)·Ry(γ), each angle being its coordinate plus its neutral angle, held to ±(90° -
-//! 0.01). With t = R·y and s = √(t_x² + t_z²) the arc turns by θ = asin s at radius L/θ, so
+//! R = Rx(α)·Rz(β)·Ry(γ), where each angle is its coordinate plus its neutral angle, clamped to
+//! ±(π/2 - 0.01). With t = R·y and s = √(t_x² + t_z²) the arc spans the angle θ = asin s with
+//! radius L/θ, so
 //!
 //! ```text
 //! p = L/θ · ((1 - cos θ)·t_x/s,  s,  (1 - cos θ)·t_z/s)
 //! ```
 //!
-//! For s below 0.001 or above 0.999 OpenSim takes a straight rod p = L·t instead; so do we, to
-//! agree with it. The jump that this makes at s = 0.999 is OpenSim's.
+//! For s below 0.001 or above 0.999 a straight rod p = L·t is used instead, for agreement with
+//! OpenSim. The discontinuity at s = 0.999 is that of OpenSim.
 
 use super::{Law, Source};
 use condyle_math::{Affine, Mat3, Scalar, Vec3};
@@ -19,7 +20,7 @@ use std::f64::consts::FRAC_PI_2;
 pub struct ConstantCurvature {
     /// Angles about x, z and y, in this order, in radians.
     pub angles: [Source; 3],
-    /// What is added to the angles.
+    /// Neutral angles in radians, added to the angles.
     pub neutral: [f64; 3],
     /// Length of the arc in metres.
     pub length: f64,
@@ -39,7 +40,7 @@ impl Law for ConstantCurvature {
         let length = S::from_f64(self.length);
         let (low, high) = (S::from_f64(0.001), S::from_f64(0.999));
         let square = tip.x * tip.x + tip.z * tip.z;
-        // A stand-in inside the arc's domain keeps the branch not taken finite.
+        // Where the rod is selected, the arc is evaluated at sin² = 0.25 to keep it finite.
         let stand_in = S::from_f64(0.25);
         let safe = square.select_less(low * low, stand_in, square);
         let safe = (high * high).select_less(safe, stand_in, safe);

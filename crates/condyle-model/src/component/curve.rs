@@ -1,46 +1,46 @@
 //! Motion along a curve in space: T = \[R(u) | c(u)\] (Rotenberg, *Skeletons*, section 2.2.4).
 //!
-//! c is a cubic spline of the parameter u, which may be any number: an angle, a distance, a share.
-//! With a [`Heading`] the segment also turns with the curve, as a car does on its track: its own
-//! `forward` axis follows the tangent t = c′/|c′|, and its `up` axis stays as near as it can to where
-//! it is at rest, in the plane of the tangent and that direction:
+//! c is a cubic spline of the parameter u, which may be an angle, a distance, or a fraction. With a
+//! [`Heading`] the segment also rotates with the curve, like a car on a track: its `forward` axis f
+//! follows the tangent t = c′/|c′|, and its `up` axis stays as near as possible to its direction at
+//! rest, in the plane of the tangent and that direction:
 //!
 //! ```text
 //! n = (up - (up·t)·t) / |…|,   R = [t, n, t × n]·[f, u, f × u]ᵀ
 //! ```
 //!
-//! with u the part of `up` across f, made a unit. Kinks: none for the position; the heading has a kink
-//! of its slope at the knots, and is undefined where the curve stops (c′ = 0) or runs along `up`: there
-//! the last rotation that can be told is not known to a function of u, and R is built on any direction
-//! across. `condyle check` finds such curves. Generator: by dual numbers.
+//! with u the normalised component of `up` perpendicular to f. The position has no kinks. The
+//! second derivative of the heading is discontinuous at the knots. The heading is undefined where
+//! c′ = 0 or where the tangent is along `up`: there R is built on an arbitrary perpendicular
+//! direction. `condyle check` finds such curves. Generator: by dual numbers.
 
 use super::{Law, Source};
 use condyle_math::function::SimmSpline;
 use condyle_math::{Affine, Mat3, Scalar, Vec3};
 
-/// A segment on a track.
+/// Motion of a segment along a curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Where on the curve it is.
+    /// The parameter of the curve.
     pub parameter: Source,
     /// The curve: splines of the parameter for x, y and z, in metres.
     pub path: Box<[SimmSpline; 3]>,
-    /// How it turns with the curve, if it does.
+    /// The axes that follow the curve; `None` for a pure translation.
     pub heading: Option<Heading>,
 }
 
-/// How a segment turns with its curve.
+/// How a segment rotates with its curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Heading {
     /// The segment's axis that follows the tangent.
     pub forward: Vec3,
-    /// The axis that stays up: the same direction in the segment at rest and in the parent.
+    /// The up axis: the same direction in the segment at rest and in the parent.
     pub up: Vec3,
 }
 
 impl Curve {
-    /// How near the curve comes to where a heading is undefined: the least |c′ × up|/(|c′||up|) over
-    /// a fine walk along its knots, 0 where it stops.
+    /// The smallest sine of the angle between tangent and `up`, |c′ × up|/(|c′||up|), over a dense
+    /// sampling between the knots: 0 if the heading is undefined somewhere, 1 without a heading.
     pub fn least_heading(&self) -> f64 {
         let Some(heading) = self.heading else { return 1.0 };
         let mut knots: Vec<f64> =
@@ -63,7 +63,7 @@ impl Curve {
     }
 }
 
-/// `v` at length 1, or `instead` where it has none to speak of.
+/// `v` normalised, or `instead` if its length is below 1e-12.
 fn unit<S: Scalar>(v: Vec3<S>, instead: Vec3) -> Vec3<S> {
     let square = v.dot(v);
     let (least, one) = (S::from_f64(1e-24), S::one());
@@ -72,14 +72,16 @@ fn unit<S: Scalar>(v: Vec3<S>, instead: Vec3) -> Vec3<S> {
     Vec3::new(pick(v.x, instead.x), pick(v.y, instead.y), pick(v.z, instead.z))
 }
 
-/// A direction across another.
+/// A unit vector perpendicular to another vector.
 fn across(v: Vec3) -> Vec3 {
+    // The cross product with a coordinate axis that is far from parallel to v.
     let pick = if v.x.abs() < 0.6 * v.norm() { Vec3::X } else { Vec3::Y };
     v.cross(pick).normalized()
 }
 
 impl Law for Curve {
     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
+        // The derivative of an order of component k, with its own slope for the chain rule.
         let at = |k: usize, order: usize| {
             inputs[0].chain(|u| {
                 let all = self.path[k].derivatives(u);
@@ -96,6 +98,7 @@ impl Law for Curve {
         let rest = Mat3::from_columns(forward, own_up, forward.cross(own_up));
         let tangent = unit(Vec3::new(at(0, 1), at(1, 1), at(2, 1)), forward);
         let up: Vec3<S> = up.normalized().cast();
+        // Only the value: the arbitrary direction has no derivatives.
         let steep = Vec3::new(tangent.x.value(), tangent.y.value(), tangent.z.value());
         let normal = unit(up - tangent * up.dot(tangent), across(steep));
         let frame = Mat3::from_columns(tangent, normal, tangent.cross(normal));
@@ -108,7 +111,7 @@ mod tests {
     use super::*;
     use crate::position::CoordinateId;
 
-    /// A quarter of a circle of radius 2 in the ground plane, finely knotted.
+    /// A circular arc of radius 2 in the ground plane, with dense knots.
     fn track(heading: Option<Heading>) -> Curve {
         let u: Vec<f64> = (0..=200).map(|i| f64::from(i) * 0.01).collect();
         let spline = |f: &dyn Fn(f64) -> f64| {
@@ -125,7 +128,7 @@ mod tests {
         let heading = Heading { forward: Vec3::X, up: Vec3::Y };
         let curve = track(Some(heading));
         for u in [0.3, 0.9, 1.4] {
-            // On a circle about y the tangent (cos u, 0, -sin u) is x turned by u about y.
+            // On a circle about y the tangent (cos u, 0, -sin u) is x rotated by u about y.
             let found = curve.transform(&[u]);
             let expected = Mat3::rotation_y(u);
             for i in 0..9 {
@@ -138,7 +141,7 @@ mod tests {
         }
         assert_eq!(track(None).transform(&[0.7]).linear, Mat3::IDENTITY);
         assert!((curve.least_heading() - 1.0).abs() < 1e-12);
-        // Up along the track: no heading can be told at its start, and nothing breaks.
+        // With up along the track the heading is undefined at its start, but still a rotation.
         let steep = track(Some(Heading { forward: Vec3::X, up: Vec3::X }));
         assert!(steep.least_heading() < 1e-6);
         assert!(steep.transform(&[0.0]).linear.determinant() > 0.999);

@@ -1,7 +1,7 @@
-//! A motion that a user of the library wrote: T = law(x₁, …, x₄).
+//! A motion defined by a user of the library: T = law(x₁, …, x₄).
 //!
-//! The law is one generic function, so posing, derivatives and tracking all run it; its name and its
-//! parameters are what files keep.
+//! The law is one generic function, which posing, derivatives and tracking evaluate. Files store
+//! its name and its parameters.
 
 use super::{Law, Source};
 use condyle_math::{Affine, Dual, Mat3, Scalar, Vec3};
@@ -12,21 +12,21 @@ use std::sync::Arc;
 
 use super::MOST_LAW_INPUTS;
 
-/// A number that knows its slope along every input of a law.
+/// A dual number with a derivative for every input of a law.
 pub type LawDual = Dual<MOST_LAW_INPUTS>;
 
 /// The parameters of a [`Custom`] component: lists of numbers by name, in metres and radians.
 pub type Parameters = BTreeMap<String, Vec<f64>>;
 
-/// A [`Law`] behind a pointer: what a program stores of a user's motion.
+/// An object-safe [`Law`], in the form in which a [`Custom`] component stores it.
 ///
-/// Every `Law` is one; nobody needs to implement this.
+/// Blanket-implemented for every `Law` that is `Debug`, `Send` and `Sync`.
 pub trait ErasedLaw: fmt::Debug + Send + Sync {
     /// The transform.
     fn at(&self, inputs: &[f64]) -> Affine;
     /// The transform with its derivatives.
     fn dual_at(&self, inputs: &[LawDual]) -> Affine<LawDual>;
-    /// Whether it neither stretches nor shears.
+    /// Whether it is rigid at all inputs; see [`Law::is_rigid`].
     fn is_rigid(&self) -> bool;
 }
 
@@ -44,14 +44,14 @@ impl<L: Law + fmt::Debug + Send + Sync> ErasedLaw for L {
     }
 }
 
-/// A motion by a user's law.
+/// A motion defined by a user's law.
 #[derive(Clone, Debug)]
 pub struct Custom {
     /// The name under which the law is registered.
     pub law: String,
-    /// What the law was made with.
+    /// The parameters of the law.
     pub parameters: Parameters,
-    /// Where its inputs come from, in its order; at most [`MOST_LAW_INPUTS`].
+    /// The sources of its inputs, in the law's order; at most [`MOST_LAW_INPUTS`].
     pub inputs: Vec<Source>,
     motion: Arc<dyn ErasedLaw>,
 }
@@ -65,12 +65,14 @@ impl PartialEq for Custom {
 
 impl Law for Custom {
     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
+        // Without derivatives the plain evaluation is enough.
         if TypeId::of::<S>() == TypeId::of::<f64>() {
             let mut plain = [0.0; MOST_LAW_INPUTS];
             plain.iter_mut().zip(inputs).for_each(|(p, x)| *p = x.value());
             return self.motion.at(&plain[..inputs.len().min(MOST_LAW_INPUTS)]).cast();
         }
-        // First order in the inputs: exact for plain numbers and for dual ones.
+        // The law is known on `LawDual` only: its partial derivatives are applied to the inputs by
+        // the chain rule. Exact for dual numbers, which are of first order.
         let mut duals = [LawDual::constant(0.0); MOST_LAW_INPUTS];
         let n = inputs.len().min(MOST_LAW_INPUTS);
         for (i, input) in inputs[..n].iter().enumerate() {
@@ -94,13 +96,13 @@ impl Law for Custom {
 
 type Maker = dyn Fn(&Parameters) -> Result<Arc<dyn ErasedLaw>, String> + Send + Sync;
 
-/// The laws that a program knows by name, so that files can speak of them.
+/// The laws that are available by name, so that files can refer to them.
 ///
 /// ```
 /// use condyle_math::{Affine, Mat3, Scalar, Vec3};
 /// use condyle_model::component::{Law, Registry};
 ///
-/// /// A cam: it turns about z and lifts as it turns.
+/// /// A cam: it rotates about z and lifts as it rotates.
 /// #[derive(Debug)]
 /// struct Cam { lift: f64 }
 /// impl Law for Cam {
@@ -134,10 +136,11 @@ impl fmt::Debug for Registry {
 }
 
 impl Registry {
-    /// Adds a law under a name, with the names of its inputs and how it is made of its parameters.
+    /// Adds a law under a name, with the names of its inputs and a function that makes it from its
+    /// parameters.
     ///
-    /// `make` says in a sentence what is wrong with parameters that it cannot use. A law registered
-    /// before under the same name is replaced.
+    /// For invalid parameters `make` returns a sentence that describes the error. A law that is
+    /// already registered under the same name is replaced.
     pub fn register<L: ErasedLaw + 'static>(
         &mut self,
         name: &str,
@@ -159,10 +162,10 @@ impl Registry {
         self.laws.get(name).map(|(inputs, _)| inputs.as_slice())
     }
 
-    /// A component of a registered law.
+    /// A component with a registered law.
     ///
     /// # Errors
-    /// A sentence: no such law, or what the law says of its parameters.
+    /// A sentence: the law is not registered, or the error of its `make` function.
     pub fn make(
         &self,
         name: &str,

@@ -5,24 +5,25 @@
 //! y = lower(d)     below, y = upper(d) above
 //! ```
 //!
-//! for a passive angle x and a driver d; a missing bound does not bound. (The source's one-to-one
-//! dependency, where both bounds are one function, is a [`Map`](super::Map).)
+//! for a passive angle x and a driver d; each bound is optional. (The one-to-one dependency of the
+//! paper, where both bounds are the same function, is a [`Map`](super::Map).)
 //!
-//! In posed mode the passive angle is held, and where the bounds cross the upper one rules. In open
-//! mode it passes unchanged, and the two sides are rows x - lower(d) ≥ 0 and upper(d) - x ≥ 0 for a
-//! solver. Kinks: in posed mode, where a bound begins to hold.
+//! In posed mode the passive angle is clamped; where the bounds cross, the upper one takes
+//! precedence. In open mode it passes unchanged, and the bounds are limit rows x - lower(d) ≥ 0 and
+//! upper(d) - x ≥ 0 for a solver. Kinks: in posed mode, where a bound becomes active.
 
 use super::Source;
 use condyle_math::function::Function;
 
-/// A passive angle that may move only as far as a driver lets it: a clavicle under a lifted arm.
+/// A passive angle whose bounds are functions of a driver: for example the elevation of the
+/// clavicle, bounded by that of the arm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Depend {
-    /// The angle that is held.
+    /// The bounded angle.
     pub passive: Source,
-    /// The angle that decides.
+    /// The argument of the bounds.
     pub driver: Source,
-    /// Least value of the passive angle, as a function of the driver.
+    /// Smallest value of the passive angle, as a function of the driver.
     pub lower: Option<Function>,
     /// Largest value of the passive angle, as a function of the driver.
     pub upper: Option<Function>,

@@ -6,28 +6,29 @@
 //! normal     p = (r ∘ r ∘ n) / |r ∘ n|        (n is the surface's normal at p)
 //! ```
 //!
-//! Both put p on the surface; with equal half axes they are one. In the first the frame's z axis is
-//! not the normal: with half axes of 7, 15 and 7 cm the two differ by up to 21.3 degrees, so a turn
-//! about z is a glide with a tilt. No kinks. Generator: by dual numbers.
+//! Both put p on the surface; with equal half axes they are the same. In the first the z axis of
+//! the frame is not the surface normal: with half axes of 7, 15 and 7 cm the two differ by up to
+//! 21.3 degrees. No kinks. Generator: by dual numbers.
 
 use super::{Law, Source};
 use condyle_math::{Affine, Mat3, Scalar, Vec3};
 
-/// A bone that glides on an ellipsoid while it turns, as the scapula does on the ribs.
+/// Gliding on an ellipsoid with rotation, like the scapula on the ribs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ellipsoid {
     /// Body-fixed angles about x, y, z in radians.
     pub angles: [Source; 3],
     /// Half axes in metres.
     pub radii: Vec3,
-    /// What the frame's z axis is.
+    /// The meaning of the frame's z axis.
     pub axis: SurfaceAxis,
 }
 
-/// What the z axis of a frame that glides on an ellipsoid is.
+/// The meaning of the z axis of a frame that glides on an ellipsoid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum SurfaceAxis {
-    /// The direction whose product with the half axes is the place: OpenSim's reading.
+    /// The direction n whose component-wise product with the half axes is the position, as in
+    /// OpenSim.
     #[default]
     OpenSim,
     /// The normal of the surface.

@@ -3,7 +3,8 @@
 use super::Source;
 use condyle_math::function::Function;
 
-/// One intention to many coordinates: a flexion that moves a knee's tibia by three functions.
+/// One scalar that drives several: for example a flexion angle that moves the tibia by three
+/// functions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
     /// The argument.

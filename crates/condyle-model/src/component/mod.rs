@@ -1,34 +1,35 @@
-//! The pieces that joint sets are made of.
+//! The components of joint sets.
 //!
-//! A component reads scalars (angles in radians, distances in metres), orientations or transforms
-//! and makes scalars or one transform of them. Its formula stands at the top of its file. Nearly all
-//! components are smooth: run on [`Dual`](condyle_math::Dual) numbers they yield their exact
-//! derivative, and the generator of a transform T(x) is the twist Ṫ·T⁻¹ in the frame it maps to.
+//! A component reads scalars (angles in radians, distances in metres), orientations or transforms,
+//! and computes scalars, an orientation or one transform. Its formula is at the top of its file.
+//! Nearly all components are smooth: evaluated on [`Dual`](condyle_math::Dual) numbers they give
+//! their exact derivatives, and the generator of a rigid transform T(x) is the twist Ṫ·T⁻¹ in the
+//! frame that T maps to.
 //!
 //! | component | in → out |
 //! | --- | --- |
 //! | [`Map`] | scalar → scalars, one function each |
 //! | [`Combine`] | scalars → scalar |
-//! | [`Depend`] | driver, passive → passive, held between bounds that the driver sets |
+//! | [`Depend`] | driver, passive → passive, clamped to bounds that the driver sets |
 //! | [`JointCone`] | angles of a ball joint, or its orientation → the legal ones |
-//! | [`Contact`] | where a bone is → the two turns that put it on an ellipsoid |
+//! | [`Contact`] | pose of a bone → the two rotations that put it on an ellipsoid |
 //! | [`Rotate`] | angle → rotation about a fixed axis |
 //! | [`Pivot`] | angle → rotation about an axis whose centre moves |
 //! | [`Translate`] | distance → translation along a fixed axis |
 //! | [`Ball`] | orientation → rotation |
 //! | [`Place`] | nothing → a fixed transform |
 //! | [`Scale`] | factor → a scale: everywhere, along an axis, or keeping the volume |
-//! | [`Shear`] | amount → layers that slide over each other |
-//! | [`Curve`] | parameter → a place on a curve, turning with it or not |
+//! | [`Shear`] | amount → a shear |
+//! | [`Curve`] | parameter → a position on a curve, with or without its heading |
 //! | [`Ellipsoid`] | three angles → a frame that glides on an ellipsoid |
 //! | [`ConstantCurvature`] | three angles → the end of an arc of fixed length |
-//! | [`Compensate`] | motions of ancestors → the rotation that undoes them |
-//! | [`Custom`] | scalars → whatever a user's law makes of them |
+//! | [`Compensate`] | motions of ancestors → the rotation that cancels them |
+//! | [`Custom`] | scalars → the transform of a user's law |
 //! | [`Product`] | transforms → their product |
 //!
-//! To add one: a file here with its struct and its formula, a variant of [`Component`], its ports
-//! in [`Component::inputs`] and [`Component::outputs`], and its lowering in `evaluate/compile.rs`;
-//! a kind that is a smooth law of scalars needs only a [`Law`] there.
+//! To add a component: a file here with its struct and its formula, a variant of [`Component`], its
+//! ports in [`Component::inputs`] and [`Component::outputs`], and its compilation in
+//! `evaluate/compile/`; a smooth function of scalars only needs to implement [`Law`] for that.
 
 mod ball;
 mod combine;
@@ -71,11 +72,11 @@ pub use translate::Translate;
 use crate::position::{ComponentId, CoordinateId};
 use condyle_math::{Affine, Scalar};
 
-/// Where a component's input, or a segment's motion, comes from.
+/// The source of an input of a component, or of the motion of a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Source {
-    /// The value of a coordinate, of any joint set: what was asked for, in posed mode inside its range.
-    /// Where a limit component holds the coordinate, what it holds is that component's output.
+    /// The requested value of a coordinate, of any joint set; in posed mode clamped to its range.
+    /// If a limit component acts on the coordinate, the limited value is that component's output.
     Coordinate(CoordinateId),
     /// One output of a component, of any joint set.
     Output(ComponentId, u32),
@@ -87,7 +88,7 @@ impl From<CoordinateId> for Source {
     }
 }
 
-/// What flows through a port.
+/// The type of the value of a port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PortType {
     /// One number: an angle, a distance, a factor.
@@ -105,11 +106,11 @@ pub enum Component {
     Map(Map),
     /// Scalars to scalar.
     Combine(Combine),
-    /// A scalar held between bounds that another sets.
+    /// A scalar clamped to bounds that another one sets.
     Depend(Depend),
-    /// A ball joint held inside a cone.
+    /// A ball joint limited by a cone.
     Cone(JointCone),
-    /// A bone put on an ellipsoid.
+    /// Contact of a segment with an ellipsoid.
     Contact(Contact),
     /// Rotation about a fixed axis.
     Rotate(Rotate),
@@ -125,11 +126,11 @@ pub enum Component {
     Ellipsoid(Ellipsoid),
     /// Bending along an arc.
     ConstantCurvature(ConstantCurvature),
-    /// The rotation that undoes what ancestors did.
+    /// The rotation that cancels those of ancestors.
     Compensate(Compensate),
-    /// Growing and shrinking.
+    /// A scale.
     Scale(Scale),
-    /// Layers sliding over each other.
+    /// A shear.
     Shear(Shear),
     /// Motion along a curve.
     Curve(Curve),
@@ -164,10 +165,10 @@ impl Component {
         }
     }
 
-    /// The inputs: the name and type of each port, and where it is connected.
+    /// The inputs: the name, type and source of each port.
     ///
-    /// A [`Compensate`] names segments and has no ports, and a [`Contact`] reads the motions on the
-    /// way to its surface beside its ports: [`Model::reads`](crate::Model::reads) finds them.
+    /// A [`Compensate`] refers to segments and has no ports, and a [`Contact`] also reads the
+    /// motions on the path to its surface: [`Model::reads`](crate::Model::reads) includes them.
     pub fn inputs(&self) -> Vec<(&'static str, PortType, Source)> {
         use PortType::{Orientation, Scalar, Transform};
         let three = |names: [&'static str; 3], sources: [Source; 3]| {
@@ -202,7 +203,7 @@ impl Component {
         }
     }
 
-    /// The type of what comes out, and how many outputs of it there are.
+    /// The type of the outputs, and their number.
     pub fn outputs(&self) -> (PortType, usize) {
         match self {
             Self::Map(c) => (PortType::Scalar, c.functions.len()),
@@ -217,19 +218,20 @@ impl Component {
     }
 }
 
-/// A smooth transform-valued law of a few scalars, written once for every number.
+/// A smooth transform-valued function of a few scalars, generic over the scalar type.
 pub trait Law {
     /// The transform at these inputs, in the order of [`Component::inputs`].
     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S>;
 
-    /// Whether the transform keeps lengths and angles at all inputs.
+    /// Whether the transform is rigid (preserves lengths and angles) at all inputs; `true` by
+    /// default.
     fn is_rigid(&self) -> bool {
         true
     }
 }
 
-/// The most inputs that a [`Law`] may have.
+/// The largest number of inputs of a [`Law`].
 pub const MOST_LAW_INPUTS: usize = 4;
 
-/// The most scalars that one [`Combine`] may read.
+/// The largest number of inputs of a [`Combine`].
 pub const MOST_COMBINED: usize = 16;

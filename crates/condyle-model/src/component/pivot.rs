@@ -1,64 +1,67 @@
-//! Rotation about one axis whose centre moves as it turns (Shao & Ng-Thow-Hing 2003, section 4.4).
+//! Rotation about an axis with a moving instantaneous centre (Shao & Ng-Thow-Hing 2003, section
+//! 4.4).
 //!
-//! The frame turns about the axis a by α, and at every angle the centre of the motion is c(α), a
-//! point fixed in the parent. So R = R(a, α), and the place t of the frame's origin obeys
+//! The frame rotates about the axis a by α, and at every angle the instantaneous centre of rotation
+//! is c(α), in the parent frame. So R = R(a, α), and the position t of the frame's origin satisfies
 //!
 //! ```text
 //! dt/dα = a × (t - c(α)),   t(0) = 0
 //! ```
 //!
-//! With one centre for each interval of angles ([`Centre::Intervals`]), every interval turns t about
-//! its own centre, from 0 outwards in both directions; the ends belong to both neighbours, and the
-//! outermost centres go on. This equals the source's product of rotations where its first interval
-//! begins at 0, and leaves angle 0 the identity where it does not.
+//! With one centre for each interval of angles ([`Centre::Intervals`]), t is rotated about the
+//! centre of each interval in turn, from 0 outwards in both directions; t is continuous at the ends
+//! of intervals, and the outermost centres apply beyond them. This equals the product of rotations
+//! of the paper if the first interval begins at 0; otherwise angle 0 is still the identity.
 //!
-//! With a smooth path of the centre ([`Centre::Path`], a cubic spline of the angle) each piece has a
-//! closed form: with A = [a]× and everything taken across the axis,
+//! With a smooth path of the centre ([`Centre::Path`], a cubic spline of the angle) each piece has
+//! a closed form: with A = [a]× and all vectors projected perpendicular to the axis,
 //!
 //! ```text
 //! t = p(α) + R(a, α)·m,   p = c - A·c′ - c″ + A·c‴,   m = R(a, -α₀)·(t₀ - p(α₀))
 //! ```
 //!
-//! where the piece begins at α₀ with t₀. p is a cubic of α, too, and c = p + A·p′ across the axis.
-//! Intervals of width h come as near to it as h. Generator: the rotation (a, c × a) about the centre.
-//! Kinks: at the ends of intervals the centre jumps, and with it the second derivative.
+//! where the piece begins at α₀ with t₀. The particular solution p is a cubic in α like c, and
+//! c = p + A·p′ perpendicular to the axis. Intervals of width h approximate it with an error of
+//! order h. Generator: the rotation (a, c × a) about the centre. Kinks: at the ends of intervals
+//! the centre, and with it the derivative, is discontinuous.
 
 use super::{Law, Source};
 use condyle_math::function::SimmSpline;
 use condyle_math::{Affine, Mat3, Scalar, Vec3};
 
-/// A hinge whose centre moves, as a knee's does.
+/// A hinge with a moving centre, like the knee.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pivot {
     /// The angle in radians.
     pub angle: Source,
     axis: Vec3,
     centre: Centre,
-    /// Where a piece ends, from the lowest angle up; the last one has no end.
+    /// The upper ends of the pieces, increasing; the last piece has none.
     ends: Vec<f64>,
     pieces: Vec<Piece>,
 }
 
-/// A stretch of angles on which the centre is a cubic: t = p(α) + R·m.
+/// An interval of angles on which the centre is a cubic: t = p(α) + R(a, α)·m.
 #[derive(Clone, Debug, PartialEq)]
 struct Piece {
-    /// An angle inside, from which the cubic counts.
+    /// The angle about which the cubic is expanded, inside the interval.
     from: f64,
-    /// p and its derivatives there, the k-th over k!.
+    /// The Taylor coefficients of p there: the k-th derivative over k!.
     particular: [Vec3; 4],
+    /// m: the homogeneous solution, fixed by the position at the beginning of the interval.
     lag: Vec3,
 }
 
-/// Where the centre of a [`Pivot`] is at each angle.
+/// The centre of a [`Pivot`] as a function of the angle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Centre {
-    /// One centre for each interval: it holds up to this angle (radians), and is this point.
+    /// One centre for each interval: its upper end (radians) and the centre (metres).
     Intervals(Vec<(f64, Vec3)>),
     /// A smooth path: splines of the angle for x, y and z.
     Path(Box<[SimmSpline; 3]>),
 }
 
-/// What no pivot can be made of.
+/// Why arguments do not make a [`Pivot`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PivotError {
@@ -66,7 +69,7 @@ pub enum PivotError {
     Axis,
     /// There is no centre.
     NoCentre,
-    /// The angle of an interval does not lie above the one before it (position from 0).
+    /// The end of an interval is not above the previous one (position from 0).
     NotIncreasing(usize),
     /// A number is not finite (position from 0).
     NotFinite(usize),
@@ -88,10 +91,11 @@ impl std::fmt::Display for PivotError {
 impl std::error::Error for PivotError {}
 
 impl Pivot {
-    /// A pivot about an axis of any length.
+    /// A pivot by an angle (radians) about an axis of any length except zero.
     ///
     /// # Errors
-    /// [`PivotError`] for an axis of length 0, no centre, intervals out of order.
+    /// [`PivotError`] for an axis of length 0, no centre, numbers that are not finite, or intervals
+    /// that are not increasing.
     pub fn new(angle: Source, axis: Vec3, centre: Centre) -> Result<Self, PivotError> {
         let length = axis.norm();
         if !(length.is_finite() && length > 1e-9) {
@@ -121,13 +125,16 @@ impl Pivot {
         };
         let mut pivot =
             Self { angle, axis: axis.normalized(), centre, ends: vec![], pieces: vec![] };
-        // From 0 outwards, each piece beginning where the one before it left the frame.
+        // Integrate from 0 outwards: each piece begins with the position at the end of the previous
+        // one. The side below 0 is processed with negated ends.
         let mut sides = [vec![], vec![]];
         for (side, sign) in sides.iter_mut().zip([-1.0, 1.0]) {
             let mut outer: Vec<f64> = ends.iter().map(|e| e * sign).filter(|e| *e > 0.0).collect();
             outer.sort_by(f64::total_cmp);
             let (mut begin, mut place) = (0.0, Vec3::ZERO);
             for end in outer.into_iter().chain([f64::INFINITY]) {
+                // An angle strictly inside selects the piece of the centre without ties at its
+                // ends.
                 let inside = 0.5 * (begin + end.min(begin + 1.0));
                 let piece = pivot.piece(sign * begin, sign * inside, place);
                 place = pivot.place_on(&piece, sign * end.min(begin + 1e9)).0;
@@ -154,12 +161,12 @@ impl Pivot {
         self.axis
     }
 
-    /// Where the centre is.
+    /// The centre as a function of the angle, as given.
     pub fn centre(&self) -> &Centre {
         &self.centre
     }
 
-    /// The centre, if it stays where it is.
+    /// The centre if it is given as a single point; otherwise `None`.
     pub fn fixed_centre(&self) -> Option<Vec3> {
         match &self.centre {
             Centre::Intervals(list) => match list[..] {
@@ -170,7 +177,8 @@ impl Pivot {
         }
     }
 
-    /// The piece around an angle inside it that begins with the frame at `place`.
+    /// The piece that contains the angle `inside` and begins at the angle `begin` with the origin
+    /// of the frame at `place`.
     fn piece(&self, begin: f64, inside: f64, place: Vec3) -> Piece {
         let [c, d1, d2, d3] = match &self.centre {
             Centre::Intervals(list) => {
@@ -184,6 +192,8 @@ impl Pivot {
         };
         let a = self.axis;
         let across = |v: Vec3| v - a * a.dot(v);
+        // p = c - A·c′ - c″ + A·c‴ and its derivatives over k!, with A² = -1 perpendicular to the
+        // axis.
         let particular = [
             across(c) - a.cross(d1) - across(d2) + a.cross(d3),
             across(d1) - a.cross(d2) - across(d3),
@@ -196,7 +206,7 @@ impl Pivot {
         piece
     }
 
-    /// The piece that an angle falls into; at an end the one nearer to 0.
+    /// The piece that contains an angle; at an end the one nearer to 0.
     #[inline]
     fn piece_at(&self, angle: f64) -> &Piece {
         let index = if angle < 0.0 {
@@ -207,7 +217,7 @@ impl Pivot {
         &self.pieces[index.min(self.pieces.len() - 1)]
     }
 
-    /// Where the frame's origin is at an angle of a piece, and how it moves.
+    /// The position of the frame's origin at an angle of a piece, and its derivative.
     #[inline]
     fn place_on(&self, piece: &Piece, angle: f64) -> (Vec3, Vec3) {
         let turned = Mat3::rotation_about(self.axis, Scalar::sin_cos(angle)) * piece.lag;
@@ -215,8 +225,8 @@ impl Pivot {
         (particular + turned, slope + self.axis.cross(turned))
     }
 
-    /// The instantaneous centre at an angle: the point of the parent that does not move, moved along
-    /// the axis to where it was given.
+    /// The instantaneous centre of rotation at an angle, in the parent frame: the given point on
+    /// the instantaneous axis.
     pub fn centre_at(&self, angle: f64) -> Vec3 {
         match &self.centre {
             Centre::Path(splines) => {
@@ -234,7 +244,7 @@ impl Pivot {
 }
 
 impl Piece {
-    /// p and p′.
+    /// p and p′ at an angle, by Horner's scheme.
     #[inline]
     fn particular_at(&self, angle: f64) -> (Vec3, Vec3) {
         let h = angle - self.from;

@@ -2,7 +2,7 @@
 
 use condyle_math::Affine;
 
-/// A frame fixed in another, such as an oblique joint axis or a shifted centre.
+/// A fixed transform, such as an oblique joint axis or a shifted centre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
     /// The child frame in its parent.

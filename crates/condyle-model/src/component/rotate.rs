@@ -1,16 +1,16 @@
 //! Rotation about a fixed axis through the origin: T = \[R(a, θ) | 0\].
 //!
-//! Generator: (a, 0). An axis through another point is a [`Place`](super::Place) before and its
-//! inverse after.
+//! Generator: (a, 0). For an axis through another point, put a [`Place`](super::Place) before it
+//! and its inverse after it.
 
 use super::Source;
 use condyle_math::Vec3;
 
-/// A hinge: one angle turns about one axis.
+/// A hinge: rotation by one angle about one axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rotate {
     /// The angle in radians.
     pub angle: Source,
-    /// The axis; its length is normalised when the model is built.
+    /// The axis; it is normalised when the model is built.
     pub axis: Vec3,
 }

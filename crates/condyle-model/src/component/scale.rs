@@ -1,4 +1,4 @@
-//! A segment that grows and shrinks: T = \[M(s) | 0\] (Rotenberg, *Skeletons*, section 2.2.5).
+//! Scaling of a segment: T = \[M(s) | 0\] (Rotenberg, *Skeletons*, section 2.2.5).
 //!
 //! ```text
 //! all directions     M = s·I
@@ -6,42 +6,42 @@
 //! volume preserved   M = s·a·aᵀ + s^(-1/2)·(I - a·aᵀ)        det M = 1
 //! ```
 //!
-//! Three scales along x, y and z make any per-axis scale. Factor 1 is the identity. A factor below
-//! 10⁻⁶ counts as 10⁻⁶ and one above 10⁶ as that, so that a segment neither vanishes nor turns inside
-//! out and every transform has an inverse; those are the only kinks. Generator: M′·M⁻¹, which is not rigid. Normals are carried
-//! by the inverse transpose M⁻ᵀ, which is M at 1/s.
+//! A product of three scales along x, y and z is any per-axis scale. Factor 1 is the identity.
+//! Factors are clamped to [10⁻⁶, 10⁶], so that every transform has an inverse and no segment is
+//! mirrored; these are the only kinks. Generator: M′·M⁻¹, which is not rigid. Normals are
+//! transformed by the inverse transpose M⁻ᵀ, which is M at 1/s.
 
 use super::Source;
 use condyle_math::{Mat3, Scalar, Vec3};
 
-/// Factors below this count as this.
+/// The smallest factor; smaller ones are clamped.
 const LEAST: f64 = 1e-6;
-/// Factors above this count as this.
+/// The largest factor; larger ones are clamped.
 const MOST: f64 = 1e6;
 
-/// A scale by one factor: a cartoon's stretch, a child's growth.
+/// A scale by one factor, for example the stretch of a cartoon character or the growth of a child.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
-    /// The factor, without unit; 1 changes nothing.
+    /// The factor, dimensionless; 1 is the identity.
     pub factor: Source,
-    /// Which directions it concerns.
+    /// The directions that are scaled.
     pub along: Along,
 }
 
-/// The directions that a [`Scale`] concerns.
+/// The directions that a [`Scale`] scales.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Along {
-    /// All, alike.
+    /// All directions, uniformly.
     Everywhere,
-    /// One axis; what lies across it keeps its size. The length is normalised when the model is
+    /// One axis; perpendicular directions are not scaled. The axis is normalised when the model is
     /// built.
     Axis(Vec3),
-    /// One axis, while what lies across it thins so that the volume stays.
+    /// One axis, with perpendicular directions scaled by 1/√s to preserve the volume.
     Volume(Vec3),
 }
 
 impl Along {
-    /// The matrix at a factor.
+    /// The matrix M(s) for a factor.
     #[inline]
     pub fn matrix<S: Scalar>(self, factor: S) -> Mat3<S> {
         let (least, most) = (S::from_f64(LEAST), S::from_f64(MOST));
@@ -61,6 +61,7 @@ impl Along {
 
     /// M′·M⁻¹ per unit of the factor.
     pub fn rate(self, factor: f64) -> Mat3 {
+        // A clamped factor does not vary.
         if !(LEAST..=MOST).contains(&factor) {
             return Mat3::from_columns(Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
         }
@@ -68,11 +69,12 @@ impl Along {
         match self {
             Self::Everywhere => uniaxial(Vec3::X, rate, rate),
             Self::Axis(axis) => uniaxial(axis, rate, 0.0),
+            // d/ds s^(-1/2) over s^(-1/2) is -1/(2s).
             Self::Volume(axis) => uniaxial(axis, rate, -0.5 * rate),
         }
     }
 
-    /// The axis, if one is singled out.
+    /// The axis; `None` for a uniform scale.
     pub fn axis(self) -> Option<Vec3> {
         match self {
             Self::Everywhere => None,
@@ -114,7 +116,7 @@ mod tests {
 
     #[test]
     fn any_axis_is_a_principal_one_in_a_turned_frame() {
-        // M(a) = R·M(x)·Rᵀ for the rotation R that carries x to a.
+        // M(a) = R·M(x)·Rᵀ for the rotation R that maps x to a.
         let axis = Vec3::new(0.6, -0.48, 0.64);
         let turn = Mat3::from_columns(axis, Vec3::new(0.8, 0.36, -0.48), Vec3::new(0.0, 0.8, 0.6));
         for (oblique, plain) in [

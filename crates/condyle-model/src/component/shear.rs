@@ -1,10 +1,9 @@
-//! A segment whose layers slide over each other: T = \[I + s·a·nᵀ | 0\] (Rotenberg, *Skeletons*,
-//! section 2.2.5).
+//! Shear of a segment: T = \[I + s·a·nᵀ | 0\] (Rotenberg, *Skeletons*, section 2.2.5).
 //!
-//! A point at distance d from the plane across n moves by s·d along a. The two directions are
-//! perpendicular, so the volume stays, the inverse is the same at -s, and the inverse transpose that
-//! carries normals is I - s·n·aᵀ. Generator: a·nᵀ, which is not rigid. Kinks: an amount beyond ±10⁶
-//! counts as that.
+//! A point at distance d from the plane with the normal n moves by s·d along a. The two directions
+//! are perpendicular, so the volume is preserved, the inverse is the shear by -s, and the inverse
+//! transpose, which transforms normals, is I - s·n·aᵀ. Generator: a·nᵀ, which is not rigid. Kinks:
+//! amounts are clamped to ±10⁶.
 
 use super::Source;
 use condyle_math::{Mat3, Scalar, Vec3};
@@ -12,15 +11,15 @@ use condyle_math::{Mat3, Scalar, Vec3};
 /// A shear by one amount.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shear {
-    /// How far a layer slides per unit of its distance; no unit, 0 changes nothing.
+    /// The displacement per unit of distance from the plane, dimensionless; 0 is the identity.
     pub amount: Source,
-    /// The direction in which layers slide; its length is normalised when the model is built.
+    /// The direction a of the displacement; it is normalised when the model is built.
     pub along: Vec3,
-    /// The direction in which they are stacked, perpendicular to it; normalised too.
+    /// The normal n of the plane, perpendicular to `along`; normalised as well.
     pub across: Vec3,
 }
 
-/// Amounts beyond this count as this.
+/// The largest absolute amount; larger ones are clamped.
 const MOST: f64 = 1e6;
 
 /// I + s·a·nᵀ.
@@ -46,7 +45,7 @@ mod tests {
 
     #[test]
     fn layers_slide_by_their_distance() {
-        // x grows with y: the row-vector form of the source has the amount in its second row.
+        // x increases with y: in the row-vector form of the source the amount is in the second row.
         let m = matrix(Vec3::X, Vec3::Y, 0.3);
         assert_eq!(m * Vec3::new(1.0, 2.0, 3.0), Vec3::new(1.6, 2.0, 3.0));
         assert_eq!(matrix(Vec3::X, Vec3::Y, -0.3) * m, Mat3::IDENTITY);

@@ -5,11 +5,11 @@
 use super::Source;
 use condyle_math::Vec3;
 
-/// A slide: one distance moves along one axis.
+/// A slider: translation by one distance along one axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Translate {
     /// The distance in metres.
     pub distance: Source,
-    /// The axis; its length is normalised when the model is built.
+    /// The axis; it is normalised when the model is built.
     pub axis: Vec3,
 }

@@ -1,34 +1,34 @@
-//! Running the elementary steps of a chain.
+//! Evaluation of a chain: the product of its elementary steps.
 
 use super::instruction::{Code, Step};
 use super::pose::Pose;
 use crate::component::{Law, MOST_LAW_INPUTS, shear};
 use condyle_math::{Affine, Mat3, Quat, Scalar, Twist, Vec3};
 
-/// Hears of every elementary motion while a chain runs.
+/// An observer that is called for every elementary motion of a chain, to record its generator.
 ///
-/// The twists are those of the chain's base frame (the world, for segments), per unit of the scalar
-/// that moves.
+/// Twists are expressed in the base frame of the chain (the world, for segments), per unit of the
+/// scalar that drives the motion.
 pub(super) trait Recorder<S> {
-    /// A turn or slide by one scalar in `frame`: as seen from there, and, for a rigid frame, as seen
-    /// from the base.
+    /// A rotation or translation by one scalar in `frame`, whose twist is `inside` expressed in
+    /// `frame` and `outside` expressed in the base; the latter only if `frame` is rigid.
     fn motion(
         &mut self,
         frame: Affine<S>,
         inside: impl FnOnce() -> Twist<S>,
         outside: impl FnOnce() -> Twist<S>,
     );
-    /// A scale or shear by one scalar in `frame`: the generator of its linear part there.
+    /// A scale or shear by one scalar in `frame`; `rate` is the generator of its linear part there.
     fn deformation(&mut self, frame: Affine<S>, rate: impl FnOnce() -> Mat3);
-    /// A smooth law, about to be multiplied to `before`.
+    /// A smooth law; `before` is the frame before it is multiplied.
     fn law(&mut self, code: &Code, law: u32, before: Affine<S>);
-    /// A transform computed before, about to be multiplied to `before`.
+    /// A transform computed by an earlier instruction; `before` is the frame before it.
     fn transform(&mut self, register: u32, before: Affine<S>);
-    /// A power of the rotation of a transform computed before, about to be multiplied to `before`.
+    /// A power of the rotation of an earlier transform; `before` is the frame before it.
     fn power(&mut self, register: u32, exponent: f64, rotation: Mat3<S>, before: Affine<S>);
 }
 
-/// Records nothing: plain evaluation.
+/// The observer that records nothing, for evaluation without derivatives.
 pub(super) struct Silent;
 
 impl<S> Recorder<S> for Silent {
@@ -45,7 +45,7 @@ impl<S> Recorder<S> for Silent {
     fn power(&mut self, _: u32, _: f64, _: Mat3<S>, _: Affine<S>) {}
 }
 
-/// A rotation raised to a power: exp(p·log R); plain for 1, 0 and -1.
+/// A rotation raised to a power p: exp(p·log R), without logarithm for 1, 0 and -1.
 #[inline]
 pub(super) fn power<S: Scalar>(rotation: Mat3<S>, exponent: f64) -> Mat3<S> {
     match exponent {
@@ -71,6 +71,7 @@ pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
         match *step {
             Step::Shift(offset) => frame = frame.shifted(offset.cast()),
             Step::Fixed(index) => frame = frame * code.fixed[index as usize].cast(),
+            // A rotation keeps its own axis, so its twist is the same before and after it.
             Step::TurnX(turn) => {
                 let inside = || Twist::rotation(Vec3::X.cast(), Vec3::zero());
                 recorder.motion(frame, inside, || Twist::rotation(r.x, origin));
@@ -93,6 +94,7 @@ pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
                 frame.linear = r * Mat3::rotation_about(axis, pose.turn(turn));
             }
             Step::Slide { axis, distance } => {
+                // A translation keeps the axes, so `along` is the same before and after it.
                 let along = r * axis.cast();
                 let inside = || Twist::translation(axis.cast());
                 recorder.motion(frame, inside, || Twist::translation(along));
@@ -110,6 +112,8 @@ pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
                 let q = orientation as usize;
                 let q: &[S; 4] = pose.scalars[q..].first_chunk().expect("four registers");
                 frame.linear = r * Quat::from(*q).to_mat3();
+                // q ⊕ δ = q·exp(δ): the three directions rotate about the axes *after* the
+                // rotation.
                 let turned = frame.linear;
                 for (unit, axis) in Vec3::UNITS.into_iter().zip([turned.x, turned.y, turned.z]) {
                     let inside = || Twist::rotation(unit.cast(), Vec3::zero());
@@ -126,7 +130,7 @@ pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
     frame
 }
 
-/// The steps that few joints have. Inlined: a call would push the frame through memory.
+/// The steps that few joints have. Inlined, because a call would pass the frame through memory.
 #[inline(always)]
 fn rare_step<S: Scalar, R: Recorder<S>>(
     code: &Code,
@@ -138,6 +142,7 @@ fn rare_step<S: Scalar, R: Recorder<S>>(
     let (r, scalars) = (frame.linear, &pose.scalars);
     match step {
         Step::Stretch { along, factor } => {
+            // The rate M′·M⁻¹ is expressed in the frame before the scale, as is that of a shear.
             let (along, factor) = (code.scales[along as usize], scalars[factor as usize]);
             recorder.deformation(frame, || along.rate(factor.value()));
             frame.linear = r * along.matrix(factor);
@@ -158,6 +163,7 @@ fn rare_step<S: Scalar, R: Recorder<S>>(
             frame = frame * call.law.transform(&inputs[..call.inputs.len()]);
         }
         Step::Power { of, exponent } => {
+            // The rotation only, about the origin of the current frame.
             let rotation = pose.transforms[of as usize].linear;
             recorder.power(of, exponent, rotation, frame);
             frame.linear = r * power(rotation, exponent);

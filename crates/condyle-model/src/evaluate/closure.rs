@@ -1,4 +1,4 @@
-//! How far loops are from being closed, and how that changes.
+//! Residuals of loop closures and their derivatives.
 
 use super::jacobian::Jacobian;
 use super::pose::Pose;
@@ -9,14 +9,15 @@ use condyle_math::{Affine, Vec3};
 
 /// Residual rows of all closures of a model, and their dense derivative.
 ///
-/// Metres and radians; a closed loop has residual 0. The rows of a point closure are the gap
-/// p₁ - p₂ in the world; those of a frame closure the gap and the rotation vector between the
-/// frames; that of a distance |p₁ - p₂| - d.
+/// In metres and radians; a closed loop has residual 0. The rows of a point closure are p₁ - p₂ in
+/// the world; those of a frame closure the difference of the origins and the rotation vector
+/// between the frames; the row of a distance is |p₁ - p₂| - d, and that of a coupling follower -
+/// f(driver).
 #[derive(Clone, Debug)]
 pub struct ClosureRows {
     /// One number for each row.
     pub residuals: Vec<f64>,
-    /// Row by row, one number for each direction.
+    /// The derivatives, row-major: one number for each direction in each row.
     pub derivatives: Vec<f64>,
     tangents: usize,
 }
@@ -44,7 +45,7 @@ impl ClosureRows {
         &self.derivatives[row * self.tangents..(row + 1) * self.tangents]
     }
 
-    /// Recomputes residuals, and derivatives where a Jacobian of the same evaluation is given.
+    /// Recomputes the residuals, and the derivatives if a Jacobian of the same evaluation is given.
     pub fn update(
         &mut self,
         model: &Model,
@@ -67,6 +68,7 @@ impl ClosureRows {
                     let [p, q] = at.map(|(s, point)| pose.frame(s) * point);
                     residuals.copy_from_slice(&(p - q).to_array());
                     let Some(jacobian) = jacobian else { continue };
+                    // A direction may move both points, hence the sum.
                     for ((segment, _), point, sign) in [(at[0], p, 1.0), (at[1], q, -1.0)] {
                         jacobian.visit_point(program, segment, point, |direction, velocity| {
                             for (i, v) in velocity.to_array().into_iter().enumerate() {
@@ -81,7 +83,8 @@ impl ClosureRows {
                     let length = gap.norm();
                     residuals[0] = length - distance;
                     let Some(jacobian) = jacobian else { continue };
-                    // Coinciding points have no direction to part in: any one will do.
+                    // d|p - q| = (p - q)/|p - q|·(dp - dq). For coinciding points the gradient is
+                    // not defined, and x is used.
                     let along = if length > 1e-12 { gap * (1.0 / length) } else { Vec3::X };
                     for ((segment, _), point, sign) in [(at[0], p, 1.0), (at[1], q, -1.0)] {
                         jacobian.visit_point(program, segment, point, |direction, velocity| {
@@ -91,7 +94,8 @@ impl ClosureRows {
                 }
                 Condition::Frames { at } => {
                     let [a, b]: [Affine; 2] = at.map(|(s, frame)| pose.frame(s) * frame);
-                    // ρ = log(R_a·R_bᵀ), in the world; near closure ρ̇ = ω_a - ω_b.
+                    // ρ = log(R_a·R_bᵀ), in the world. R_a·R_bᵀ has the angular velocity
+                    // ω_a - R_a·R_bᵀ·ω_b, which log_rate maps to ρ̇. Both frames are rigid.
                     let between = a.linear * b.linear.transpose();
                     let turn = between.log();
                     let gap = a.translation - b.translation;
@@ -103,7 +107,7 @@ impl ClosureRows {
                         for &(direction, twist) in program.segment_directions(segment) {
                             let twist = jacobian.twist(twist);
                             let linear = twist.velocity_at(frame.translation).to_array();
-                            // The second frame's turn enters carried through R_a·R_bᵀ.
+                            // ω_a as it is, ω_b rotated by R_a·R_bᵀ.
                             let spin =
                                 if sign > 0.0 { twist.angular } else { between * twist.angular };
                             let angular = log_rate(turn, spin).to_array();
@@ -117,6 +121,7 @@ impl ClosureRows {
                 }
                 Condition::Coupling { follower, driver, function } => {
                     let value = |id: CoordinateId| pose.coordinate(model, id)[0];
+                    // Scalar coordinates, with one stored number and one direction each.
                     let (wanted, slope) = function.value_and_slope(value(*driver));
                     residuals[0] = value(*follower) - wanted;
                     if jacobian.is_some() {

@@ -1,9 +1,9 @@
-//! Generators of motions that are not rigid: what moves below a scale or a shear.
+//! Generators of motions that are not rigid: those of segments below a scale or a shear.
 //!
-//! With T the transform of a segment, Ṫ·T⁻¹ = \[A | v\] moves the point p of the world by A·p + v.
-//! The skew part of A is the angular velocity of a [`Twist`], and its symmetric part, the *strain*,
-//! stands beside it; rigid motions have none. A generator in the frame B of a chain becomes
-//! \[B·A·B⁻¹ | …\] in the chain's base.
+//! With T the transform of a segment, Ṫ·T⁻¹ = \[A | v\] gives the point p of the world the velocity
+//! A·p + v. The skew part of A is the angular velocity of a [`Twist`]; its symmetric part, the
+//! *strain*, is stored separately and is zero for rigid motions. A generator \[A | v\] in a frame
+//! with linear part B and origin t becomes \[A′ | B·v - A′·t\] in its base, with A′ = B·A·B⁻¹.
 
 use condyle_math::{Affine, Mat3, Twist, Vec3};
 
@@ -15,7 +15,7 @@ pub(super) struct Rate {
 }
 
 impl Rate {
-    /// A twist with its strain.
+    /// The generator of a twist with its strain: A = \[ω\]× + strain.
     pub(super) fn new(twist: Twist, strain: Mat3) -> Self {
         let w = twist.angular;
         let skew = Mat3::from_columns(
@@ -26,7 +26,7 @@ impl Rate {
         Self { linear: sum(skew, strain), translation: twist.linear }
     }
 
-    /// A rate of the linear part alone.
+    /// A generator without translation.
     pub(super) fn of_linear(linear: Mat3) -> Self {
         Self { linear, translation: Vec3::ZERO }
     }
@@ -37,14 +37,14 @@ impl Rate {
         Self { linear, translation: derivative.translation - linear * value.translation }
     }
 
-    /// The same motion seen from the base of `frame`.
+    /// The same motion expressed in the base of `frame`.
     pub(super) fn transformed(self, frame: Affine) -> Self {
         let linear = frame.linear * self.linear * frame.linear.inverse();
         let translation = frame.linear * self.translation - linear * frame.translation;
         Self { linear, translation }
     }
 
-    /// The twist and the strain.
+    /// The twist and the strain: skew and symmetric part of A.
     pub(super) fn split(self) -> (Twist, Mat3) {
         let m = self.linear;
         let angular = Vec3::new(m.y.z - m.z.y, m.z.x - m.x.z, m.x.y - m.y.x) * 0.5;

@@ -1,16 +1,22 @@
-//! Which numbers a Jacobian holds and how they are made, settled when a program is compiled.
+//! The sparsity pattern of a Jacobian and the order of its terms, determined when a program is
+//! compiled.
+//!
+//! The plan walks the instructions in the order in which they run. For every scalar it records
+//! which directions (tangents of the coordinates) it depends on, with a slot for each derivative;
+//! for every transform which directions move it, with the index of each twist. Evaluation then
+//! reads the terms in sequence, without a search.
 
 use super::instruction::{Code, Instruction, NO_BASE, Step};
 use crate::component::Swinging;
 
-/// Where the running sum of a twist begins.
+/// The initial value of the sum to which a term is added.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Start {
-    /// From nothing.
+    /// Zero: the first term, in a direction that does not move the base.
     Zero,
-    /// From another twist: what the parent already does for this direction.
+    /// Another twist, that of the base in this direction: the first term of this chain.
     From(u32),
-    /// It has begun: add.
+    /// The twist itself: a later term.
     Add,
 }
 
@@ -18,7 +24,7 @@ pub(super) enum Start {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Term {
     pub twist: u32,
-    /// Slot of ∂scalar/∂direction; slot 0 always holds 1.
+    /// The slot of ∂scalar/∂direction; slot 0 always contains 1.
     pub derivative: u32,
     pub start: Start,
 }
@@ -26,37 +32,38 @@ pub(super) struct Term {
 /// One term of a scalar's derivative: ∂f/∂input · ∂input/∂direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ScalarTerm {
-    /// Position among the slopes that the instruction computes.
+    /// The position among the partial derivatives that the instruction computes.
     pub slope: u32,
     pub from: u32,
     pub to: u32,
     pub first: bool,
 }
 
-/// The sparse shape of all derivatives of a code.
+/// The sparsity pattern of all derivatives of a program.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DerivativePlan {
     pub tangents: usize,
     pub twists: usize,
     pub derivatives: usize,
-    /// For each unit motion in the order in which chains run, how many terms it feeds.
+    /// For each unit motion in the order in which chains run, the number of its terms.
     pub term_counts: Vec<u32>,
     pub terms: Vec<Term>,
-    /// For each scalar instruction in order, how many terms it has.
+    /// For each scalar instruction in order, the number of its terms.
     pub scalar_counts: Vec<u32>,
     pub scalar_terms: Vec<ScalarTerm>,
-    /// How many scalar terms belong to instructions that are complete.
+    /// The number of scalar terms of completed instructions.
     ended: u32,
-    /// For each transform register its (direction, twist) pairs, sorted by direction.
+    /// The (direction, twist) pairs of all transform registers, sorted by direction within each;
+    /// register i has those from `entry_offsets[i]` up to `entry_offsets[i + 1]`.
     entries: Vec<(u32, u32)>,
     entry_offsets: Vec<u32>,
     /// For each stored number its (direction, derivative slot) pairs.
     coordinate_entries: Vec<Vec<(u32, u32)>>,
     /// For each limit row its (direction, derivative slot) pairs.
     row_entries: Vec<Vec<(u32, u32)>>,
-    /// Which transform registers are not rigid.
+    /// For each transform register whether it is not rigid.
     pub deforming: Vec<bool>,
-    /// For each twist the slot of its strain, or [`RIGID`]; empty where no twist has one.
+    /// For each twist the slot of its strain, or [`RIGID`]; twists beyond its end have none.
     strain_slots: Vec<u32>,
     pub strains: usize,
 }
@@ -92,7 +99,7 @@ impl DerivativePlan {
     }
 }
 
-/// Plans the derivatives of a program whose instructions are complete.
+/// Plans the derivatives of the instructions of a program, in their final order.
 ///
 /// `directions` gives the register of each free coordinate (the first one of an orientation) with its
 /// (first) direction.
@@ -102,6 +109,7 @@ pub(super) fn plan(
     tangents: usize,
     directions: &[(u32, u32)],
 ) -> DerivativePlan {
+    // One derivative from the start: slot 0, the constant 1.
     let mut plan = DerivativePlan {
         tangents,
         derivatives: 1,
@@ -110,6 +118,7 @@ pub(super) fn plan(
     };
     // (direction, slot) of every scalar register.
     let mut scalars: Vec<Vec<(u32, u32)>> = vec![vec![]; code.scalars];
+    // A free coordinate has the derivative 1 in its own direction: slot 0.
     for &(register, direction) in directions {
         scalars[register as usize].push((direction, 0));
     }
@@ -123,7 +132,7 @@ pub(super) fn plan(
                 plan.end_scalar();
             }
             Instruction::Hold { passive, output, .. } => {
-                // Derivatives are those of open mode, where nothing is held.
+                // Derivatives are those of open mode, where the value passes unchanged.
                 let inputs = [scalars[*passive as usize].clone()];
                 scalars[*output as usize] = plan.scalar(0, &inputs);
                 plan.end_scalar();
@@ -138,6 +147,7 @@ pub(super) fn plan(
                 let call = &code.cones[*cone as usize];
                 let inputs: Vec<Vec<(u32, u32)>> = match call.component.of {
                     Swinging::Orientation(_) => {
+                        // The register of x stands for all four numbers and their three directions.
                         let first = scalars[call.inputs[0] as usize].clone();
                         scalars[call.outputs[0] as usize] = first.clone();
                         let along = |k| first.iter().map(|&(d, slot)| (d + k, slot)).collect();
@@ -146,19 +156,22 @@ pub(super) fn plan(
                     _ => {
                         let read = |&r: &u32| scalars[r as usize].clone();
                         let inputs: Vec<_> = call.inputs.iter().map(read).collect();
-                        // In open mode the angles pass: their slope is 1.
+                        // In open mode the angles pass unchanged: their derivative, at position 0,
+                        // is 1.
                         for (input, &output) in inputs.iter().zip(&call.outputs) {
                             scalars[output as usize] = plan.scalar(0, std::slice::from_ref(input));
                         }
                         inputs
                     }
                 };
+                // Three derivatives for each row, after that of the angles.
                 for (row, &register) in call.rows.iter().enumerate() {
                     scalars[register as usize] = plan.scalar(1 + 3 * row, &inputs);
                 }
                 plan.end_scalar();
             }
             Instruction::Contact { contact } => {
+                // The order of the units here and below is that of the calls of `Tape::emit`.
                 let call = &code.contacts[*contact as usize];
                 let mut moving = vec![];
                 for (direction, _) in &transforms[call.frame as usize] {
@@ -179,6 +192,7 @@ pub(super) fn plan(
                 let mut moving = plan.inherit(&transforms, *base);
                 let mut deforming = plan.deforms(*base);
                 for step in &code.steps[*first as usize..*end as usize] {
+                    // Everything after the first step that is not rigid is not rigid either.
                     deforming |= !step.is_rigid(code, |register| !plan.deforms(register));
                     match *step {
                         Step::Fixed(_) | Step::Shift(_) => {}
@@ -204,6 +218,7 @@ pub(super) fn plan(
                                 plan.unit(&mut moving, &scalars[*input as usize]);
                             }
                         }
+                        // Generators of the earlier transform, each already that of one direction.
                         Step::Transform(register) | Step::Power { of: register, .. } => {
                             for (direction, _) in &transforms[register as usize] {
                                 plan.unit(&mut moving, &one.map(|slot| (*direction, slot)));
@@ -225,7 +240,8 @@ pub(super) fn plan(
     plan
 }
 
-/// A direction that moves the frame of a chain: its twist, and whether this chain has its own.
+/// A direction that moves the frame of a chain: its twist, and whether that belongs to this chain
+/// or is shared with the base.
 struct Moving {
     direction: u32,
     twist: u32,
@@ -233,7 +249,9 @@ struct Moving {
 }
 
 impl DerivativePlan {
-    /// Derivatives of a new scalar that depends on `inputs` by as many slopes, from `first` on.
+    /// Plans the derivatives of a new scalar that depends on `inputs`: ∂f/∂inputs[i] is at position
+    /// `first + i` of the derivatives that the instruction computes. Returns (direction, slot)
+    /// pairs.
     fn scalar(&mut self, first: usize, inputs: &[Vec<(u32, u32)>]) -> Vec<(u32, u32)> {
         let mut made: Vec<(u32, u32)> = vec![];
         for (position, input) in inputs.iter().enumerate() {
@@ -253,7 +271,7 @@ impl DerivativePlan {
         made
     }
 
-    /// Closes the terms of a scalar instruction.
+    /// Ends the terms of a scalar instruction.
     fn end_scalar(&mut self) {
         let all = self.scalar_terms.len() as u32;
         self.scalar_counts.push(all - std::mem::replace(&mut self.ended, all));
@@ -274,6 +292,7 @@ impl DerivativePlan {
             let known = moving.iter_mut().find(|m| m.direction == direction);
             let (twist, start) = match known {
                 Some(m) if m.own => (m.twist, Start::Add),
+                // Copy on write: the twist of the base stays as it is, for other children.
                 Some(m) => {
                     let start = Start::From(m.twist);
                     *m = Moving { direction, twist: self.twists as u32, own: true };
@@ -293,6 +312,8 @@ impl DerivativePlan {
     }
 
     fn ball(&mut self, moving: &mut Vec<Moving>, dependencies: &[(u32, u32)]) {
+        // The three directions of an orientation are consecutive. A constant one has no
+        // dependencies but still three units, because the chain records three motions.
         for axis in 0..3 {
             match dependencies.first() {
                 Some(&(direction, slot)) => self.unit(moving, &[(direction + axis, slot)]),
@@ -307,6 +328,7 @@ impl DerivativePlan {
 
     fn close(&mut self, mut moving: Vec<Moving>, deforming: bool, output: u32) -> Vec<(u32, u32)> {
         self.deforming[output as usize] = deforming;
+        // Twists shared with the base keep the slots they have, if any.
         if deforming {
             self.strain_slots.resize(self.twists, RIGID);
             for own in moving.iter().filter(|m| m.own) {

@@ -1,4 +1,4 @@
-//! Running a program: coordinates in, transforms out.
+//! Evaluation of a program: transforms from coordinates.
 
 use super::chain::{Silent, run_chain};
 use super::instruction::{Instruction, NO_BASE, NO_BOUND};
@@ -7,22 +7,24 @@ use super::program::{Mode, Program, SizeMismatch};
 use crate::component::MOST_COMBINED;
 use condyle_math::{Affine, Quat, Scalar};
 
-/// The largest size of a number that is taken as given.
+/// The largest absolute value of a scalar; larger ones are clamped.
 const MOST: f64 = 1e9;
 
-/// A number no larger than that; NaN counts as the upper end.
+/// A number clamped to ±10⁹; NaN becomes 10⁹.
 #[inline(always)]
 pub(super) fn finite<S: Scalar>(x: S) -> S {
+    // NaN is not less than `most`, so the first selection replaces it.
     let (least, most) = (S::from_f64(-MOST), S::from_f64(MOST));
     let held = x.select_less(most, x, most);
     held.select_less(least, least, held)
 }
 
-/// Runs balls one after another: first all their own transforms, then the products along the tree.
+/// Runs consecutive ball instructions: first the local transforms of all, then the products along
+/// the tree.
 ///
-/// The first loop has no step that waits for the one before it, so the divisions overlap. In the
-/// second the frame stays in registers for as long as each ball hangs on the one before: what is
-/// read back at once, in other pieces than it was written, has to wait for memory.
+/// The iterations of the first loop are independent, so the divisions of several overlap. In the
+/// second loop the frame stays in registers as long as each ball is a child of the previous one:
+/// reading it back right after writing it in smaller pieces would cause a store-forwarding stall.
 #[inline]
 fn run_balls<S: Scalar>(balls: &[Instruction], pose: &mut Pose<S>) {
     for ball in balls {
@@ -49,10 +51,10 @@ fn run_balls<S: Scalar>(balls: &[Instruction], pose: &mut Pose<S>) {
 impl Program {
     /// Computes the transforms of all segments at the requested coordinates.
     ///
-    /// `requested` holds the stored numbers of all coordinates in the model's order, in radians and
-    /// metres, an orientation as x, y, z, w of any length (of none: no turn). Numbers for coordinates
-    /// that follow others are ignored, and sizes beyond 10⁹ count as 10⁹: no input makes a transform
-    /// that is not finite. Nothing is allocated.
+    /// `requested` contains the stored numbers of all coordinates in the model's order, in radians
+    /// and metres, an orientation as a quaternion x, y, z, w of any length (length 0 is the
+    /// identity). Numbers for coordinates that follow others are ignored. Numbers are clamped to
+    /// ±10⁹, so that no input gives a non-finite transform. Does not allocate.
     ///
     /// # Errors
     /// [`SizeMismatch`] if `requested`, or a pose made for another program, has the wrong length.
@@ -68,12 +70,12 @@ impl Program {
             self.run_scalar(instruction, mode, &mut pose.scalars);
         }
         pose.take_turns(&self.code.turns);
-        // The frame made last, in registers: most chains hang on the one before, and what was just
-        // written to memory in pieces is slow to come back whole.
+        // The last frame, kept in registers: most chains have the previous one as their base, and
+        // reading it back from memory right after writing it would cause a store-forwarding stall.
         let mut last = (NO_BASE, Affine::identity());
         let mut rest = transforms;
         while let Some(first) = rest.first() {
-            // Balls in runs, everything else one by one.
+            // Consecutive balls together, other instructions one by one.
             let mut count = 1;
             match *first {
                 Instruction::BallAt { .. } => {
@@ -82,6 +84,7 @@ impl Program {
                     run_balls(&rest[..count], pose);
                 }
                 Instruction::Chain { base, shift, first, end, output } => {
+                    // The initial `last` is the identity, right for a chain without a base as well.
                     let from = if base == last.0 {
                         last.1
                     } else if base == NO_BASE {
@@ -103,7 +106,7 @@ impl Program {
         Ok(())
     }
 
-    /// Checks sizes and fills the registers that do not depend on an instruction.
+    /// Checks sizes and fills the registers that no instruction computes.
     pub(super) fn load<S: Scalar>(
         &self,
         requested: &[S],
@@ -117,7 +120,7 @@ impl Program {
             self.code.transforms,
             pose.transforms.len(),
         )?;
-        // What no body can be asked for stays finite all the way.
+        // Clamped, so that no input gives a non-finite transform.
         for (value, &asked) in pose.scalars.iter_mut().zip(requested) {
             *value = finite(asked);
         }
@@ -129,6 +132,8 @@ impl Program {
                 *value = upper.select_less(*value, upper, *value);
             }
         }
+        // The register of a coordinate that a limit component holds will be overwritten with its
+        // effective value: everything that reads the requested one reads this copy.
         for &(own, asked) in &self.asked {
             pose.scalars[asked as usize] = pose.scalars[own as usize];
         }
@@ -138,7 +143,7 @@ impl Program {
         Ok(())
     }
 
-    /// Runs an instruction that makes a scalar.
+    /// Runs a scalar instruction; does nothing for the others.
     #[inline(always)]
     pub(super) fn run_scalar<S: Scalar>(
         &self,
@@ -162,6 +167,7 @@ impl Program {
             }
             Instruction::Hold { passive, lower, upper, output } => {
                 let mut value = scalars[passive as usize];
+                // The lower bound first: where the bounds cross, the upper one wins.
                 if mode == Mode::Posed {
                     if lower != NO_BOUND {
                         let bound = scalars[lower as usize];
@@ -181,7 +187,8 @@ impl Program {
         }
     }
 
-    /// Holds a ball joint inside its cone, or says how far inside it is.
+    /// Posed mode: moves the numbers of a ball joint into its cone. Open mode: passes them, and
+    /// computes the limit rows.
     fn run_cone<S: Scalar>(&self, cone: u32, mode: Mode, scalars: &mut [S]) {
         let call = &self.code.cones[cone as usize];
         let mut asked = [0.0; 4];
@@ -193,14 +200,17 @@ impl Program {
         }
         if mode == Mode::Posed {
             if let Some(legal) = call.component.legal(&asked[..n]) {
+                // Constants: the derivative of a moved number is taken as 0.
                 values = legal.map(S::from_f64);
             }
-            // What is left to correct is nothing.
+            // The effective posture is legal: no violation remains.
             call.rows.iter().for_each(|&row| scalars[row as usize] = S::zero());
         } else {
             let rows = call.component.open_rows(&asked[..n]);
             for (&register, (value, slopes)) in call.rows.iter().zip(rows) {
                 let slopes = call.component.stored_slopes(&asked[..n], slopes);
+                // A row is known by value and slopes: Σ x.chain(0, slope) adds the derivatives
+                // only.
                 let terms = values[..n].iter().zip(slopes);
                 scalars[register as usize] = terms
                     .fold(S::from_f64(value), |sum, (x, slope)| sum + x.chain(|_| (0.0, slope)));
@@ -211,7 +221,7 @@ impl Program {
         }
     }
 
-    /// Puts a bone on its ellipsoid.
+    /// Evaluates a contact: the transform of its two rotations, and its report.
     fn run_contact<S: Scalar>(&self, contact: u32, pose: &mut Pose<S>) {
         let call = &self.code.contacts[contact as usize];
         let mut drivers = [S::zero(); 2];

@@ -1,4 +1,4 @@
-//! What a program consists of: instructions, the steps of chains, and the tables they read.
+//! The instructions of a program, the steps of chains, and the tables that they refer to.
 
 use crate::component::{
     Along, ConstantCurvature, Curve, Custom, Ellipsoid, Gliding, JointCone, Law, Pivot,
@@ -7,14 +7,14 @@ use crate::position::ComponentId;
 use condyle_math::function::{Function, FunctionOfSeveral};
 use condyle_math::{Affine, Scalar, Vec3};
 
-/// Marks a bound that is not there.
+/// Marks an absent bound.
 pub(super) const NO_BOUND: u32 = u32::MAX;
 
-/// Marks a chain that starts from nothing instead of from a transform.
+/// Marks a chain that starts from the identity instead of a transform register.
 pub(super) const NO_BASE: u32 = u32::MAX;
 
 impl Instruction {
-    /// Whether it makes scalars, of nothing but scalars.
+    /// Whether it computes scalars from scalars only.
     pub(super) fn makes_scalars(&self) -> bool {
         use Instruction::{Combine, Cone, Function, Hold};
         matches!(self, Function { .. } | Combine { .. } | Hold { .. } | Cone { .. })
@@ -22,10 +22,11 @@ impl Instruction {
 }
 
 impl Step {
-    /// Whether it keeps lengths and angles, given which transforms computed before do.
+    /// Whether it preserves lengths and angles; `transform` tells it for earlier transforms.
     pub(super) fn is_rigid(self, code: &Code, transform: impl Fn(u32) -> bool) -> bool {
         match self {
             Self::Fixed(index) => {
+                // MᵀM = 1, within the precision of numbers in files.
                 let m = code.fixed[index as usize].linear;
                 let product = m.transpose() * m;
                 [product.x - Vec3::X, product.y - Vec3::Y, product.z - Vec3::Z]
@@ -47,29 +48,29 @@ pub(super) enum Step {
     Fixed(u32),
     /// A fixed translation.
     Shift(Vec3),
-    /// A turn about the frame's own first axis; the number is that of the turn in [`Code::turns`].
+    /// A rotation about the x axis of the frame; the number is the position in [`Code::turns`].
     TurnX(u32),
-    /// A turn about the frame's own second axis.
+    /// A rotation about the y axis of the frame.
     TurnY(u32),
-    /// A turn about the frame's own third axis.
+    /// A rotation about the z axis of the frame.
     TurnZ(u32),
-    /// A turn about any axis.
+    /// A rotation about any axis of length 1.
     Turn { axis: Vec3, turn: u32 },
-    /// A slide along any axis.
+    /// A translation along any axis; `distance` is a scalar register.
     Slide { axis: Vec3, distance: u32 },
-    /// Slides along the frame's own three axes.
+    /// Translations along the three axes of the frame, by three scalar registers.
     Move([u32; 3]),
-    /// A rotation by four consecutive scalars x, y, z, w.
+    /// A rotation by a quaternion in four consecutive scalar registers x, y, z, w.
     Ball(u32),
-    /// A scale by a factor.
+    /// A scale; `along` is a position in [`Code::scales`], `factor` a scalar register.
     Stretch { along: u32, factor: u32 },
-    /// A slide of layers over each other.
+    /// A shear; `directions` is a position in [`Code::shears`], `amount` a scalar register.
     Shear { directions: u32, amount: u32 },
-    /// A smooth law of a few scalars.
+    /// A smooth law of a few scalars, by its position in [`Code::laws`].
     Law(u32),
-    /// A transform computed before.
+    /// An earlier transform, by its register.
     Transform(u32),
-    /// A power of the rotation of a transform computed before; -1 is its inverse.
+    /// A power of the rotation of an earlier transform; -1 is its inverse.
     Power { of: u32, exponent: f64 },
 }
 
@@ -80,7 +81,7 @@ pub(super) struct LawCall {
     pub inputs: Vec<u32>,
 }
 
-/// The laws that components bring.
+/// The smooth laws of components.
 #[derive(Clone, Debug)]
 pub(super) enum AnyLaw {
     Pivot(Pivot),
@@ -115,17 +116,17 @@ impl Law for AnyLaw {
 pub(super) enum Instruction {
     /// `scalars[output] = functions[function](scalars[input])`.
     Function { function: u32, input: u32, output: u32 },
-    /// `scalars[output] = several[function](scalars[inputs])`.
+    /// `scalars[output] = combines[function](scalars[inputs])`.
     Combine { function: u32, output: u32 },
-    /// `scalars[output] = scalars[passive]`, held between other scalars in posed mode.
+    /// `scalars[output] = scalars[passive]`, clamped between two other scalars in posed mode.
     Hold { passive: u32, lower: u32, upper: u32, output: u32 },
-    /// The numbers of a ball joint, held inside a cone in posed mode.
+    /// The numbers of a ball joint, moved into a cone in posed mode.
     Cone { cone: u32 },
-    /// A bone put on an ellipsoid.
+    /// The two rotations that bring a segment into contact with an ellipsoid.
     Contact { contact: u32 },
     /// `transforms[output] = transforms[base] · shift · steps`.
     Chain { base: u32, shift: Vec3, first: u32, end: u32, output: u32 },
-    /// The commonest chain of character skeletons: a shift and a ball.
+    /// The most common chain of character skeletons: a shift and a ball.
     BallAt { base: u32, shift: Vec3, orientation: u32, output: u32 },
 }
 
@@ -150,27 +151,27 @@ pub(super) struct ConeCall {
 pub(super) struct ContactCall {
     pub component: ComponentId,
     pub law: Gliding,
-    /// The transform of the bone in the ellipsoid, before the contact turns it.
+    /// The transform register of the segment in the ellipsoid's frame, before the contact.
     pub frame: u32,
     pub drivers: Vec<u32>,
-    /// The transform of the two turns.
+    /// The transform register of the two rotations.
     pub output: u32,
     /// The first of four scalars: two angles, two gaps.
     pub report: u32,
 }
 
-/// Instructions in the order in which they run, and everything they refer to by position.
+/// The instructions in the order in which they run, and the tables that they refer to by position.
 #[derive(Clone, Debug)]
 pub(super) struct Code {
-    /// How many scalar registers there are; the first hold the coordinates.
+    /// The number of scalar registers; the first are the stored numbers of the coordinates.
     pub scalars: usize,
-    /// How many transform registers there are; the first hold the segments.
+    /// The number of transform registers; the first are those of the segments.
     pub transforms: usize,
-    /// Those that make scalars, then those that make transforms.
+    /// Scalar instructions, then those that compute transforms.
     pub instructions: Vec<Instruction>,
-    /// How many make scalars.
+    /// The number of scalar instructions.
     pub scalar_instructions: usize,
-    /// The register of each angle whose sine and cosine are wanted.
+    /// The scalar registers of the angles whose sines and cosines are needed.
     pub turns: Vec<u32>,
     pub steps: Vec<Step>,
     pub fixed: Vec<Affine>,
@@ -178,12 +179,12 @@ pub(super) struct Code {
     pub combines: Vec<CombineCall>,
     pub laws: Vec<LawCall>,
     pub scales: Vec<Along>,
-    /// Along and across.
+    /// The directions `along` and `across` of each shear.
     pub shears: Vec<[Vec3; 2]>,
-    /// Registers that must not be negative in a legal posture, beside the bounds of coordinates.
+    /// The scalar registers of the limit rows: not negative in a legal posture.
     pub rows: Vec<u32>,
     pub cones: Vec<ConeCall>,
     pub contacts: Vec<ContactCall>,
-    /// The transform register of the world, on which the roots hang.
+    /// The transform register of the model's root frame, the parent of the root segments.
     pub base: u32,
 }

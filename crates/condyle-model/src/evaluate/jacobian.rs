@@ -1,4 +1,4 @@
-//! How every segment moves with every direction of the coordinates.
+//! The derivatives of all segments with respect to the directions (tangents) of the coordinates.
 
 use super::chain::{Recorder, run_chain};
 use super::deformation::NO_STRAIN;
@@ -11,11 +11,11 @@ use crate::component::MOST_COMBINED;
 use crate::model::SegmentId;
 use condyle_math::{Affine, Dual, Mat3, Quat, Twist, Vec3};
 
-/// World generators of one evaluation.
+/// The generators of one evaluation, expressed in the world.
 ///
-/// Sparse: a segment has a twist for each direction that moves it, and shares the twists of its
-/// ancestors. Below a scale or a shear a twist has a strain beside it. The velocity of a point of
-/// the world per unit of a direction is [`Jacobian::velocity_at`].
+/// Sparse: a segment has a twist for each direction that moves it, and shares twists with its
+/// ancestors. Below a scale or a shear a twist also has a strain. [`Jacobian::velocity_at`] is the
+/// velocity of a point of the world per unit of a direction.
 #[derive(Clone, Debug)]
 pub struct Jacobian {
     pub(super) twists: Vec<Twist>,
@@ -26,6 +26,7 @@ pub struct Jacobian {
 impl Jacobian {
     /// Buffers for this program.
     pub fn new(program: &Program) -> Self {
+        // Slot 0 is the constant 1, the derivative of a coordinate in its own direction.
         let mut derivatives = vec![0.0; program.plan.derivatives];
         derivatives[0] = 1.0;
         Self {
@@ -35,34 +36,38 @@ impl Jacobian {
         }
     }
 
-    /// A twist by its number, as [`Program::segment_directions`] gives it.
+    /// A twist by its index, as given by [`Program::segment_directions`].
     #[inline(always)]
     pub fn twist(&self, number: u32) -> Twist {
         self.twists[number as usize]
     }
 
-    /// The strain beside a twist, for a segment below a scale or a shear: a symmetric matrix D, so
-    /// that the point p of the world moves by the twist's velocity and D·p.
+    /// The strain that belongs to a twist, for a segment below a scale or a shear; otherwise
+    /// `None`.
+    ///
+    /// A symmetric matrix D: the velocity of the point p of the world is that of the twist plus
+    /// D·p.
     #[inline(always)]
     pub fn strain(&self, program: &Program, number: u32) -> Option<Mat3> {
         program.plan.strain_slot(number).map(|slot| self.strains[slot])
     }
 
-    /// The velocity of a point (in the world, metres) per unit of a direction, by its twist.
+    /// The velocity of a point (in the world, metres) per unit of a direction, given by the index
+    /// of its twist.
     #[inline(always)]
     pub fn velocity_at(&self, program: &Program, number: u32, point: Vec3) -> Vec3 {
         let rigid = self.twist(number).velocity_at(point);
         self.strain(program, number).map_or(rigid, |strain| rigid + strain * point)
     }
 
-    /// The derivative in a slot, as [`Program::coordinate_directions`] gives it.
+    /// The derivative in a slot, as given by [`Program::coordinate_directions`].
     #[inline(always)]
     pub fn derivative(&self, slot: u32) -> f64 {
         self.derivatives[slot as usize]
     }
 
-    /// Calls `visit` with each direction that moves a point (in the world, metres) fixed in a
-    /// segment, and the point's velocity per unit of it.
+    /// Calls `visit` for each direction that moves a point (in the world, metres) fixed in a
+    /// segment, with the direction and the velocity of the point per unit of it.
     #[inline]
     pub fn visit_point(
         &self,
@@ -80,7 +85,7 @@ impl Jacobian {
 }
 
 impl Program {
-    /// [`Program::evaluate`] in open mode, with the generators of all segments beside it.
+    /// [`Program::evaluate`] in open mode, which also computes the generators of all segments.
     ///
     /// # Errors
     /// [`SizeMismatch`] if `requested`, the pose or the Jacobian has the wrong length.
@@ -100,6 +105,7 @@ impl Program {
         let mut term_counts = plan.term_counts.iter();
         let mut terms = plan.terms.iter();
         for (number, instruction) in self.code.instructions.iter().enumerate() {
+            // All scalars are complete: sines and cosines of the angles can be computed.
             if number == self.code.scalar_instructions {
                 pose.take_turns(&self.code.turns);
             }
@@ -119,6 +125,8 @@ impl Program {
             };
             let from =
                 if base == NO_BASE { Affine::IDENTITY } else { pose.transforms[base as usize] };
+            // The tape borrows the Jacobian for one instruction; its iterators are copied back
+            // after.
             let mut tape = Tape {
                 twists: &mut jacobian.twists,
                 strains: &mut jacobian.strains,
@@ -164,7 +172,7 @@ impl Program {
         Ok(())
     }
 
-    /// Runs a scalar instruction and the chain rule through it.
+    /// Runs a scalar instruction and applies the chain rule to it; `terms` are its own.
     fn differentiate_scalar(
         &self,
         instruction: &Instruction,
@@ -192,6 +200,7 @@ impl Program {
                     value.value = pose.scalars[input as usize];
                 }
                 pose.scalars[output as usize] = finite(call.function.apply(&values[..n]).value);
+                // One partial derivative at a time, each seeded and cleared again.
                 for term in terms {
                     let i = term.slope as usize;
                     values[i].partials[0] = 1.0;
@@ -216,6 +225,7 @@ impl Program {
                 for (&register, (value, _)) in call.rows.iter().zip(&rows) {
                     pose.scalars[register as usize] = *value;
                 }
+                // Position 0 is that of the angles, 1 + 3·row + k that of a row along angle k.
                 for term in terms {
                     add(
                         term,

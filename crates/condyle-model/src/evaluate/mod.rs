@@ -1,29 +1,31 @@
-//! From coordinates to transforms.
+//! Forward kinematics: from coordinates to transforms, with exact derivatives.
 //!
 //! [`Program::compile`] flattens a model once: components are sorted, constants folded, identities
-//! dropped, products of single-use components laid end to end. What remains are, first, scalar
-//! instructions (`y = f(x)`, bounds, cones), then *chains*, products of elementary steps
+//! dropped, and products of components with a single reader are concatenated. The result is a list
+//! of scalar instructions (`y = f(x)`, bounds, cones), followed by *chains*, products of elementary
+//! steps
 //!
 //! ```text
 //! T_out = T_base · S₁ · S₂ · … · Sₙ,     Sᵢ ∈ {fixed, turn about an axis, slide along it, ball, scale, shear, law}
 //! ```
 //!
-//! and contacts, which make two turns of a chain's result. Between the two the sines of all angles
-//! are taken together.
+//! and contacts, which compute two rotations from the result of a chain. Between the scalar
+//! instructions and the chains the sines and cosines of all angles are computed in one loop.
 //!
-//! A segment's world transform is a chain whose base is its parent's. [`Program::evaluate`] runs
-//! them in order over any scalar; [`Program::evaluate_with_jacobian`] also records, at each step,
-//! the world generator of what moves there. If step i turns about a by θ(q), coordinate q
-//! contributes ∂θ/∂q · (a, c × a) to every segment beyond it, with c the frame's origin; twists at
-//! the world's origin add, so a segment's derivative is a sum over its path, and most segments
-//! share their ancestors' numbers without a copy.
+//! The world transform of a segment is a chain whose base is the transform of its parent.
+//! [`Program::evaluate`] runs the instructions in order, for any scalar type.
+//! [`Program::evaluate_with_jacobian`] also records, at each step, the twist of its motion in the
+//! world. If step i rotates about the axis a by θ(q), coordinate q contributes ∂θ/∂q · (a, c × a)
+//! to every segment beyond it, with c the origin of the frame. Twists about the origin of the world
+//! add, so the derivative of a segment is a sum over the path to it, and most segments share the
+//! twists of their ancestors without a copy.
 //!
-//! Below a scale or a shear a generator has a strain beside its twist.
+//! Below a scale or a shear a motion is not rigid: it has a strain in addition to its twist.
 //!
-//! In [`Mode::Posed`] coordinates are first moved into their ranges, and passive ones between the
-//! bounds of their drivers. In [`Mode::Open`] they are taken as given, and a solver gets the limits
-//! as rows. The range of a coordinate that follows others is a row only: moving it would break what
-//! it follows.
+//! In [`Mode::Posed`] coordinates are first clamped to their ranges, and passive ones to the bounds
+//! that their drivers set. In [`Mode::Open`] they are used as given, and the limits are available
+//! to a solver as inequality rows. The range of a coordinate that follows others is always a row:
+//! clamping the follower would violate its dependency.
 
 mod chain;
 mod closure;

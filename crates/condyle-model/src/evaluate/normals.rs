@@ -1,13 +1,14 @@
-//! Inverse transposes, by which normals are carried where segments stretch or shear (Rotenberg,
-//! *Skeletons*, section 2.2.5).
+//! Inverse transposes, which transform surface normals where segments are scaled or sheared
+//! (Rotenberg, *Skeletons*, section 2.2.5).
 //!
 //! ```text
 //! W⁻ᵀ = W_parent⁻ᵀ · L⁻ᵀ
 //! ```
 //!
-//! is built along the chains as the transforms are, each step by its own inverse: a rotation is its own
-//! inverse transpose, a scale by s is one by 1/s, a shear by s along a is one by -s along n. No matrix
-//! is inverted but those of users' laws.
+//! is computed along the chains, like the transforms, from the inverse transpose of each step: that
+//! of a rotation is itself, that of a scale by s a scale by 1/s, that of a shear by s along a a
+//! shear by
+//! -s along n. Only fixed transforms and the laws of users need a matrix inversion.
 
 use super::chain::power;
 use super::instruction::{AnyLaw, Instruction, NO_BASE, Step};
@@ -17,16 +18,18 @@ use crate::component::{Law, MOST_LAW_INPUTS, shear};
 use condyle_math::{Mat3, Quat};
 
 impl Program {
-    /// Fills `normals` with the inverse transpose of the linear part of every transform of a pose, of
-    /// which the first are those of the segments, in the model's order.
+    /// Computes the inverse transpose of the linear part of every transform of a pose.
     ///
-    /// A normal n of a segment's surface is n′ = `normals[segment.index()]`·n in the world, of another
-    /// length where the segment is stretched. For rigid segments it is the rotation itself.
+    /// The first ones are those of the segments, in the model's order. A surface normal n of a
+    /// segment is n′ = `normals[segment.index()]`·n in the world; where the segment is not rigid,
+    /// n′ has to be normalised. For rigid segments the matrix is the rotation itself.
     ///
     /// # Errors
-    /// [`SizeMismatch`] if `normals` does not have [`Program::normal_len`] places.
+    /// [`SizeMismatch`] if the length of `normals` is not [`Program::normal_len`].
     pub fn normals(&self, pose: &Pose, normals: &mut [Mat3]) -> Result<(), SizeMismatch> {
         SizeMismatch::check("the list of normals", self.normal_len(), normals.len())?;
+        // Right for every rigid transform; the others are replaced below, in the order of the
+        // program, so that the bases are complete before they are read.
         for (normal, transform) in normals.iter_mut().zip(&pose.transforms) {
             *normal = transform.linear;
         }
@@ -55,12 +58,12 @@ impl Program {
         Ok(())
     }
 
-    /// How many places [`Program::normals`] fills: at least one for each segment.
+    /// The number of matrices that [`Program::normals`] computes: at least one for each segment.
     pub fn normal_len(&self) -> usize {
         self.code.transforms
     }
 
-    /// The inverse transpose of one step.
+    /// The inverse transpose of the linear part of one step.
     fn carrier(&self, step: Step, pose: &Pose, normals: &[Mat3]) -> Mat3 {
         let scalar = |register: u32| pose.scalars[register as usize];
         match step {
@@ -71,10 +74,12 @@ impl Program {
             Step::TurnZ(turn) => Mat3::identity().rotated_z(pose.turn(turn)),
             Step::Turn { axis, turn } => Mat3::rotation_about(axis, pose.turn(turn)),
             Step::Ball(q) => Quat::from(std::array::from_fn(|i| scalar(q + i as u32))).to_mat3(),
+            // Symmetric, so the inverse is the inverse transpose.
             Step::Stretch { along, factor } => {
                 self.code.scales[along as usize].inverse(scalar(factor))
             }
             Step::Shear { directions, amount } => {
+                // (I + s·a·nᵀ)⁻ᵀ = I - s·n·aᵀ, since a·n = 0.
                 let [along, across] = self.code.shears[directions as usize];
                 shear::matrix(across, along, -scalar(amount))
             }
@@ -85,6 +90,7 @@ impl Program {
                     *value = scalar(register);
                 }
                 let linear = call.law.transform(&inputs[..call.inputs.len()]).linear;
+                // The other laws are rotations.
                 match call.law {
                     AnyLaw::Custom(_) => linear.inverse().transpose(),
                     _ => linear,

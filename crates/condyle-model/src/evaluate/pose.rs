@@ -1,27 +1,29 @@
-//! One character at one moment.
+//! The buffers and results of one evaluation.
 
 use super::program::Program;
 use crate::model::{CoordinateId, Model, SegmentId};
 use condyle_math::{Affine, Scalar};
 
-/// What a contact did to its bone.
+/// The result of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactReport<S = f64> {
-    /// The two turns in radians: about the given axis, and about the line to the first point.
+    /// The two rotation angles in radians: about the given axis, and about the line to the first
+    /// point.
     pub angles: [S; 2],
-    /// How far each point stays off the surface in metres, positive outside; 0 in contact.
+    /// The signed distance of each point from the surface in metres, positive outside; 0 in
+    /// contact.
     pub gaps: [S; 2],
 }
 
 /// The buffers of one evaluation: effective coordinates and the transforms of all segments.
 ///
-/// Made once for a program and used for any number of evaluations. A pose belongs to one character
-/// in one moment; the model is shared.
+/// Allocated once for a program and used for any number of evaluations. Each character needs its
+/// own pose; the program is shared.
 #[derive(Clone, Debug)]
 pub struct Pose<S = f64> {
     pub(super) scalars: Vec<S>,
     pub(super) transforms: Vec<Affine<S>>,
-    /// Angles that turn something, with their sines and cosines.
+    /// The angles of all rotation steps, and their sines and cosines.
     angles: Vec<S>,
     turns: Vec<(S, S)>,
     segments: usize,
@@ -47,7 +49,7 @@ impl<S: Scalar> Pose<S> {
         }
     }
 
-    /// Bytes of the buffers: every scalar and transform, those that only components read included.
+    /// The size of the buffers in bytes: all scalars and transforms, including intermediate ones.
     pub fn bytes(&self) -> usize {
         let turns = size_of_val(&self.angles[..]) + size_of_val(&self.turns[..]);
         size_of_val(&self.scalars[..]) + size_of_val(&self.transforms[..]) + turns
@@ -59,14 +61,15 @@ impl<S: Scalar> Pose<S> {
         self.transforms[segment.index()]
     }
 
-    /// The world transform of a segment, or that of the model's own world.
+    /// The world transform of a segment, or for `None` that of the model's root frame.
     #[inline]
     pub fn frame(&self, segment: Option<SegmentId>) -> Affine<S> {
         self.transforms[segment.map_or(self.base, SegmentId::index)]
     }
 
-    /// Takes sine and cosine of all angles at once, which lets several share one instruction.
+    /// Computes sine and cosine of all angles in one loop, which the compiler can vectorise.
     pub(super) fn take_turns(&mut self, registers: &[u32]) {
+        // Gathered first, so that the second loop runs over contiguous memory.
         for (angle, &register) in self.angles.iter_mut().zip(registers) {
             *angle = self.scalars[register as usize];
         }
@@ -75,19 +78,19 @@ impl<S: Scalar> Pose<S> {
         }
     }
 
-    /// Sine and cosine of a turn.
+    /// Sine and cosine of a rotation angle, by its position in `Code::turns`.
     #[inline(always)]
     pub(super) fn turn(&self, number: u32) -> (S, S) {
         self.turns[number as usize]
     }
 
-    /// Puts the model's world somewhere else: into a scene, or into the space of a camera. Every
-    /// evaluation after it carries all segments along; it is rigid, and the identity at first.
+    /// Sets the rigid transform of the model's root frame, to place the model in a scene or in
+    /// camera space. It takes effect at the next evaluation; initially it is the identity.
     pub fn place(&mut self, world: Affine<S>) {
         self.transforms[self.base] = world;
     }
 
-    /// How a contact came out, by its number in [`Program::contacts`].
+    /// The result of a contact, by its position in [`Program::contacts`].
     pub fn contact(&self, number: usize) -> Option<ContactReport<S>> {
         let at = *self.reports.get(number)? as usize;
         let [a, b, c, d] = *self.scalars[at..].first_chunk()?;
@@ -99,16 +102,17 @@ impl<S: Scalar> Pose<S> {
         &self.transforms[..self.segments]
     }
 
-    /// The stored numbers of all coordinates as they took effect: limits applied in posed mode,
-    /// coupled coordinates as their leaders determine them.
+    /// The effective stored numbers of all coordinates: limits applied in posed mode, and
+    /// coordinates that follow others as their leaders determine them.
     pub fn effective(&self) -> &[S] {
         &self.scalars[..self.stored]
     }
 
-    /// A limit row: negative where the posture of the last evaluation breaks that limit.
+    /// The value of a limit row, in radians or metres: negative if the last evaluation violates
+    /// that limit.
     ///
-    /// Meant for open mode. In posed mode the row of a bound or a range tells how far off what was asked
-    /// for is, and the rows of a cone are 0.
+    /// Intended for open mode. In posed mode the row of a bound or a range is that of the requested
+    /// value, and the rows of a cone are 0.
     pub fn limit_row(&self, row: usize) -> S {
         self.scalars[self.rows[row] as usize]
     }

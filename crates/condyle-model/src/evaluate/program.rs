@@ -1,37 +1,38 @@
-//! A model flattened for evaluation.
+//! The compiled form of a model.
 
 use super::derivative_plan::DerivativePlan;
 use super::instruction::Code;
 use crate::model::{ComponentId, CoordinateId, Model, SegmentId};
 use std::fmt;
 
-/// Whether limits move the coordinates.
+/// Whether limits are applied to the coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// Limits move the coordinates first: what is asked for is brought into its range.
+    /// Limits are applied: requested coordinates are first moved into their ranges, bounds and
+    /// cones.
     Posed,
-    /// Coordinates are taken as given.
+    /// Coordinates are used as given.
     Open,
 }
 
-/// A model compiled for evaluation: flat, sorted, and shared by all poses.
+/// A model compiled for evaluation: a sorted list of instructions, shared by all poses.
 #[derive(Clone, Debug)]
 pub struct Program {
-    /// How many numbers the coordinates store.
+    /// The number of stored numbers of all coordinates.
     pub(super) stored: usize,
     pub(super) segments: usize,
-    /// Registers that hold the same number at every evaluation.
+    /// Scalar registers with constant values.
     pub(super) constants: Vec<(u32, f64)>,
-    /// Coordinates that a limit component holds: their own register, and the one for what was
-    /// asked for.
+    /// For each number of a coordinate that a limit component holds, its own register and that of
+    /// the requested value.
     pub(super) asked: Vec<(u32, u32)>,
-    /// Register, lower and upper bound of every coordinate that posed mode holds.
+    /// Register, lower and upper bound of every coordinate that posed mode clamps.
     pub(super) limits: Vec<(u32, f64, f64)>,
     pub(super) code: Code,
     pub(super) plan: DerivativePlan,
 }
 
-/// A buffer of the wrong length.
+/// The error for a buffer of the wrong length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SizeMismatch {
     /// Which buffer.
@@ -62,59 +63,60 @@ impl SizeMismatch {
 }
 
 impl Program {
-    /// How many numbers [`Program::evaluate`] takes: one for each coordinate, four for an
-    /// orientation.
+    /// The number of stored numbers that [`Program::evaluate`] takes: one for each coordinate, four
+    /// for an orientation.
     pub fn stored_len(&self) -> usize {
         self.stored
     }
 
-    /// How many directions the coordinates move in.
+    /// The number of directions (tangents) of all coordinates.
     pub fn tangent_len(&self) -> usize {
         self.plan.tangents
     }
 
-    /// How many segments there are.
+    /// The number of segments.
     pub fn segment_len(&self) -> usize {
         self.segments
     }
 
-    /// Directions that move a segment, each with the number of its twist in a [`Jacobian`].
+    /// The directions that move a segment, each with the index of its twist in a [`Jacobian`].
     ///
     /// [`Jacobian`]: super::Jacobian
     pub fn segment_directions(&self, segment: SegmentId) -> &[(u32, u32)] {
         self.plan.segment_entries(segment.index())
     }
 
-    /// The contacts that move something: [`Pose::contact`](super::Pose::contact) reports on them by
-    /// their number in this list.
+    /// The contacts that move a segment: [`Pose::contact`](super::Pose::contact) takes a position
+    /// in this list.
     pub fn contacts(&self) -> impl ExactSizeIterator<Item = ComponentId> {
         self.code.contacts.iter().map(|call| call.component)
     }
 
-    /// Whether a segment hangs below a scale or a shear, so that its transform is not rigid.
+    /// Whether a segment is below a scale or a shear, so that its transform is not rigid.
     pub fn deforms(&self, segment: SegmentId) -> bool {
         self.plan.deforming[segment.index()]
     }
 
-    /// Directions that move the effective value of a coordinate of one number, each with the slot
-    /// of its derivative in a [`Jacobian`]: itself, or the leaders of one that follows.
+    /// The directions on which the effective value of a scalar coordinate depends, each with the
+    /// slot of its derivative in a [`Jacobian`]: its own direction, or those of its leaders.
     ///
     /// [`Jacobian`]: super::Jacobian
     pub fn coordinate_directions(&self, model: &Model, coordinate: CoordinateId) -> &[(u32, u32)] {
         self.plan.coordinate_entries(model.stored_range(coordinate).start)
     }
 
-    /// How many limits there are that bounds of single coordinates do not express.
+    /// The number of limit rows: limits that are not bounds of single free coordinates.
     ///
-    /// Each is a number that a legal posture does not make negative, in radians or metres: the
-    /// distance of a passive angle from the bound that its driver sets, or of a coordinate that
-    /// follows others from its range. [`Pose::limit_row`](super::Pose::limit_row) has the
-    /// number of the last evaluation.
+    /// Each is a number in radians or metres that is not negative in a legal posture: the distance
+    /// of a passive angle from the bound that its driver sets, of a coordinate that follows others
+    /// from the ends of its range, or of a ball joint from the boundary of its cone.
+    /// [`Pose::limit_row`](super::Pose::limit_row) gives the values of the last evaluation.
     pub fn limit_row_len(&self) -> usize {
         self.code.rows.len()
     }
 
-    /// Directions that move a limit row, each with the slot of its derivative in a [`Jacobian`].
+    /// The directions on which a limit row depends, each with the slot of its derivative in a
+    /// [`Jacobian`].
     ///
     /// [`Jacobian`]: super::Jacobian
     pub fn limit_row_directions(&self, row: usize) -> &[(u32, u32)] {

@@ -1,28 +1,34 @@
-//! Rates of rotation vectors: the left Jacobian of SO(3) and its inverse.
+//! The left Jacobian of SO(3) and its inverse: rates of rotation vectors and angular velocities.
 
 use condyle_math::Vec3;
 
-/// The rate of the rotation vector ρ when its rotation turns with `spin` from the left.
+/// The rate ρ̇ of the rotation vector ρ (`turn`) of R for the angular velocity ω (`spin`), Ṙ =
+/// \[ω\]× R.
 ///
-/// ρ̇ = ω - ½ ρ × ω + (1/θ² - (1 + cos θ)/(2 θ sin θ)) ρ × (ρ × ω), the inverse left Jacobian of SO(3).
+/// The inverse left Jacobian of SO(3), with θ = |ρ|:
+/// ρ̇ = ω - ½ ρ × ω + (1/θ² - (1 + cos θ)/(2 θ sin θ)) ρ × (ρ × ω).
 pub(super) fn log_rate(turn: Vec3, spin: Vec3) -> Vec3 {
     let square = turn.norm_squared();
+    // Near 0 the Taylor series; the omitted term is θ⁴/30240 of the factor.
     let factor = if square < 1e-6 {
         1.0 / 12.0 + square / 720.0
     } else {
         let angle = square.sqrt();
         let (s, c) = angle.sin_cos();
+        // At θ = π, 1 + cos θ vanishes faster than sin θ: the bound avoids 0/0.
         1.0 / square - (1.0 + c) / (2.0 * angle * s.max(1e-12))
     };
     let cross = turn.cross(spin);
     spin - cross * 0.5 + turn.cross(cross) * factor
 }
 
-/// The rate with which exp(ρ) turns, from the left, when ρ changes with `rate`.
+/// The angular velocity ω of R = exp(ρ), Ṙ = \[ω\]× R, when ρ (`turn`) changes at `rate` ρ̇.
 ///
-/// ω = ρ̇ + (1 - cos θ)/θ² ρ × ρ̇ + (θ - sin θ)/θ³ ρ × (ρ × ρ̇), the left Jacobian of SO(3).
+/// The left Jacobian of SO(3), with θ = |ρ|:
+/// ω = ρ̇ + (1 - cos θ)/θ² ρ × ρ̇ + (θ - sin θ)/θ³ ρ × (ρ × ρ̇).
 pub(super) fn exp_rate(turn: Vec3, rate: Vec3) -> Vec3 {
     let square = turn.norm_squared();
+    // Near 0 the Taylor series; the omitted terms are θ⁴/720 and θ⁴/5040.
     let (first, second) = if square < 1e-6 {
         (0.5 - square / 24.0, 1.0 / 6.0 - square / 120.0)
     } else {

@@ -1,4 +1,4 @@
-//! Collecting generators while chains run.
+//! Recording of generators while chains run.
 
 use super::chain::Recorder;
 use super::deformation::{NO_STRAIN, Rate, sum, times};
@@ -8,11 +8,14 @@ use super::rotation_rate::{exp_rate, log_rate};
 use crate::component::{Law, LawDual, MOST_LAW_INPUTS};
 use condyle_math::{Affine, Dual, Mat3, Twist, Vec3};
 
-/// Turns unit motions into twists, in the order that the plan foresees.
+/// Accumulates unit motions to the twists of directions, in the order of the derivative plan.
+///
+/// A unit motion is the generator per unit of a scalar; its contribution to the twist of a
+/// direction is multiplied by ∂scalar/∂direction.
 pub(super) struct Tape<'p, 'a> {
     pub twists: &'a mut [Twist],
     pub strains: &'a mut [Mat3],
-    /// Whether something in this chain is not rigid, so that all its twists have strains.
+    /// Whether something in this chain is not rigid, so that its own twists have strains.
     pub deforming: bool,
     pub derivatives: &'a [f64],
     pub counts: std::slice::Iter<'p, u32>,
@@ -24,6 +27,7 @@ pub(super) struct Tape<'p, 'a> {
 impl Tape<'_, '_> {
     #[inline(always)]
     fn emit(&mut self, twist: impl FnOnce() -> Twist) {
+        // No direction moves this scalar: its twist need not be computed.
         let count = self.counts.next().copied().unwrap_or(0);
         if count == 0 {
             return;
@@ -40,7 +44,7 @@ impl Tape<'_, '_> {
         }
     }
 
-    /// As `emit`, in a chain whose twists have strains.
+    /// The same as `emit`, for a chain whose twists have strains.
     fn emit_rate(&mut self, rate: impl FnOnce() -> Rate) {
         let count = self.counts.next().copied().unwrap_or(0);
         if count == 0 {
@@ -67,14 +71,16 @@ impl Tape<'_, '_> {
     }
 }
 
-/// A number that knows its slopes along six rigid motions and two drivers.
+/// A dual number with derivatives along six rigid motions (three rotations, three translations) and
+/// two drivers.
 type ContactDual = Dual<8>;
 
 impl Tape<'_, '_> {
-    /// Puts a bone on its ellipsoid: its turns, and their angles and gaps.
+    /// Evaluates a contact with its derivatives: the transform of its rotations, and their two
+    /// angles and two gaps.
     ///
-    /// The turns' generators along the six motions of the bone's frame are found once; every
-    /// direction is a sum of them.
+    /// The derivatives along the six rigid motions of the segment's frame are computed once; that
+    /// of a direction is their linear combination with the frame's twist as coefficients.
     pub(super) fn contact(&mut self, call: &ContactCall, frame: Affine) -> (Affine, [f64; 4]) {
         let number = |value: f64, partials: [f64; 6]| {
             let mut all = [0.0; 8];
@@ -90,6 +96,7 @@ impl Tape<'_, '_> {
             };
             Vec3::new(number(v.x, part(0)), number(v.y, part(1)), number(v.z, part(2)))
         };
+        // The columns of the rotation are vectors, the origin is a point.
         let m = frame.linear;
         let linear =
             Mat3::from_columns(carried(m.x, false), carried(m.y, false), carried(m.z, false));
@@ -107,6 +114,7 @@ impl Tape<'_, '_> {
             Mat3::from_columns(pick(r.x, f), pick(r.y, f), pick(r.z, f))
         };
         let turns = Affine::from_rotation(whole(&|d| d.value));
+        // The angular velocity of R along motion k, from Ṙ·Rᵀ.
         let spins: [Vec3; 8] = std::array::from_fn(|k| {
             let derivative = Affine::new(whole(&|d| d.partials[k]), Vec3::ZERO);
             Twist::from_derivative(turns, derivative).angular
@@ -116,6 +124,7 @@ impl Tape<'_, '_> {
             let weights = [w.x, w.y, w.z, l.x, l.y, l.z];
             weights.into_iter().zip(spins).fold(Vec3::ZERO, |sum, (w, s)| sum + s * w)
         };
+        // In the order of the plan: the directions of the frame, then the drivers.
         for &(_, twist) in self.plan.segment_entries(call.frame as usize) {
             let inner = self.twists[twist as usize];
             self.emit(|| Twist::rotation(spin(inner), Vec3::ZERO));
@@ -149,6 +158,7 @@ impl Recorder<f64> for Tape<'_, '_> {
     }
 
     fn law(&mut self, code: &Code, law: u32, before: Affine) {
+        // One evaluation on duals gives the derivatives with respect to all inputs.
         let call = &code.laws[law as usize];
         let mut inputs = [LawDual::constant(0.0); MOST_LAW_INPUTS];
         for (i, &register) in call.inputs.iter().enumerate() {
@@ -173,12 +183,14 @@ impl Recorder<f64> for Tape<'_, '_> {
     }
 
     fn power(&mut self, register: u32, exponent: f64, rotation: Mat3, before: Affine) {
+        // ±1 need no logarithm, and have no kink at a half turn.
         let plain = exponent == 1.0 || exponent == -1.0;
         let turn = if plain { Vec3::ZERO } else { rotation.log() };
         let raised = turn * exponent;
         for &(_, twist) in self.plan.segment_entries(register as usize) {
             let spin = self.twists[twist as usize].angular;
-            // d exp(p·ρ) = J(p·ρ)·p·J(ρ)⁻¹·ω, with J the left Jacobian of SO(3).
+            // The angular velocity of exp(p·ρ) is J(p·ρ)·p·J(ρ)⁻¹·ω, with J the left Jacobian of
+            // SO(3). For p = -1, Rᵀ has the angular velocity -Rᵀ·ω.
             let moved = match exponent {
                 1.0 => spin,
                 -1.0 => -(rotation.transpose() * spin),
@@ -193,6 +205,7 @@ impl Recorder<f64> for Tape<'_, '_> {
     }
 
     fn transform(&mut self, register: u32, before: Affine) {
+        // The twists of the earlier transform, in its own base, mapped by the adjoint of `before`.
         for &(_, twist) in self.plan.segment_entries(register as usize) {
             let inner = self.twists[twist as usize];
             if self.deforming {

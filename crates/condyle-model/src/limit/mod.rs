@@ -1,12 +1,11 @@
-//! What a joint cannot do.
+//! Joint limits.
 //!
-//! A limit answers two questions of coordinates: by how much are they inside (negative outside),
-//! and which legal ones are nearest. In posed mode the nearest legal ones are used; in open mode
-//! the coordinates pass unchanged and the answer to the first question becomes rows g(q) ≥ 0 for a
+//! For given coordinates a limit computes their distance from the boundary (negative outside) and
+//! the nearest legal coordinates. In posed mode the nearest legal coordinates are used. In open
+//! mode the coordinates pass unchanged, and the distances are inequality rows g(q) ≥ 0 for a
 //! solver.
 //!
-//! A [`Range`] limits one coordinate; a [`Cone`] limits a ball joint's rotation, its direction and
-//! its twist together.
+//! A [`Range`] limits one coordinate; a [`Cone`] limits swing and twist of a ball joint together.
 
 mod cone;
 mod range;

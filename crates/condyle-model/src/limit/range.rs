@@ -1,17 +1,17 @@
 //! The range of one coordinate.
 
-/// Lowest and highest value of a coordinate, each of which may be absent.
+/// The lowest and highest value of a coordinate, each optional.
 ///
-/// Radians for rotations, metres for translations. A range that is not `enforced` only says what a
-/// slider should show: neither posed mode nor tracking holds the coordinate to it (in `.osim`
-/// files that is a coordinate whose `clamped` is false).
+/// Radians for rotations, metres for translations. A range that is not `enforced` is only a hint
+/// for user interfaces: neither posed mode nor tracking clamps the coordinate to it (in `.osim`
+/// files, a coordinate whose `clamped` is false).
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Range {
-    /// The lowest value, if there is one.
+    /// The lowest value; `None` for no lower limit.
     pub lower: Option<f64>,
-    /// The highest value, if there is one.
+    /// The highest value; `None` for no upper limit.
     pub upper: Option<f64>,
-    /// Whether the coordinate is held to it.
+    /// Whether the limits apply.
     pub enforced: bool,
 }
 
@@ -24,7 +24,7 @@ impl Range {
         Self { lower: Some(lower), upper: Some(upper), enforced: true }
     }
 
-    /// The bounds that hold: infinite where a side is absent or the range is not enforced.
+    /// The effective bounds: infinite if a side is absent or the range is not enforced.
     ///
     /// ```
     /// use condyle_model::Range;
@@ -44,7 +44,7 @@ impl Range {
         value.max(lower).min(upper)
     }
 
-    /// How far inside the bounds a value lies; negative outside, infinite without bounds.
+    /// The distance of a value from the nearer bound: negative outside, infinite without bounds.
     pub fn distance(&self, value: f64) -> f64 {
         let (lower, upper) = self.bounds();
         (value - lower).min(upper - value)

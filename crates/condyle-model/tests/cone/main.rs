@@ -1,4 +1,5 @@
-//! The joint cone against slow and obvious geometry, on random directions, paths and rotations.
+//! The joint cone against a slow reference implementation, on random directions, paths and
+//! rotations.
 
 mod refusals;
 mod rotations;
@@ -17,7 +18,7 @@ fn membership_is_the_parity_of_crossings_to_a_point_inside() {
     for (name, rest, points, subdivisions) in shapes() {
         let cone = make(rest, &points, subdivisions, Projection::Nearest);
         let edges = edges(&cone);
-        // Not rest itself, from which the cone's own test looks.
+        // Not rest itself, which the implementation uses.
         let room = angle_to_boundary(rest, &edges);
         let inner = polar(rest, 2.0, 0.4 * room);
         let mut inside = 0;
@@ -54,7 +55,8 @@ fn the_nearest_projection_beats_every_sampled_point_of_the_boundary() {
         let samples: Vec<Vec3> = samples.collect();
         for _ in 0..12 * SCALE {
             let v = random.direction();
-            // The largest cosine is the smallest angle; it is taken exactly for that one.
+            // The largest cosine is the smallest angle; the exact angle is computed for that one
+            // only.
             let best = samples.iter().copied().max_by(|a, b| a.dot(v).total_cmp(&b.dot(v)));
             let best = angle(v, best.unwrap());
             let (distance, _) = cone.distance(v);
@@ -88,7 +90,7 @@ fn what_was_projected_is_inside_and_stays() {
             for v in directions {
                 let projected = cone.project(v);
                 assert!(cone.contains(projected.direction), "{name} {v:?}");
-                // What was on the boundary already is so to rounding, by either side's edge.
+                // A direction on the boundary is inside to rounding, by the edge of either side.
                 let room = if projected.distance > 0.0 { 0.0 } else { 1e-15 };
                 assert!(cone.distance(projected.direction).0 >= -room, "{name} {v:?}");
                 let again = cone.project(projected.direction);
@@ -100,7 +102,7 @@ fn what_was_projected_is_inside_and_stays() {
                     let v = v.normalized();
                     assert!(rest.cross(v).normalized().dot(x).abs() < 1e-12, "{name}");
                     assert!((angle(rest, x) + angle(x, v) - angle(rest, v)).abs() < 1e-12);
-                    // The way in to a depth of 1e-14, seen at 1e-3 or more, in steps of four.
+                    // Steps of factor 4 to a depth of 1e-14, at a sine of 1e-3 or more.
                     assert!(cone.distance(x).0 < 4e-11, "{name}");
                 }
             }
@@ -140,7 +142,7 @@ fn many_points_on_a_circle_are_the_circular_cone() {
 #[test]
 fn control_points_stay_on_the_refined_boundary() {
     for (name, rest, points, _) in shapes() {
-        // A curve through such teeth turns back.
+        // The refined boundary through such teeth is not star-shaped.
         let most = if name == "saw" { 0 } else { 3 };
         for subdivisions in 0..=most {
             let cone = make(rest, &points, subdivisions, Projection::Nearest);
@@ -163,7 +165,7 @@ fn control_points_stay_on_the_refined_boundary() {
     assert!(cone.boundary().any(|q| (q - expected).norm() < 1e-15));
 }
 
-/// Steps along a path that turns at random: each two neighbours and the angle between them.
+/// Steps along a random path: pairs of consecutive directions and the angle between them.
 fn path(random: &mut Random, steps: usize, mut visit: impl FnMut(Vec3, Vec3)) {
     let step = 0.05f64.to_radians();
     let mut v = random.direction();
@@ -210,7 +212,7 @@ fn along_paths_the_nearest_projection_jumps_only_where_its_margin_says() {
             }
         };
         path(&mut random, 15_000 * SCALE, &mut visit);
-        // Past the pole of each edge, along it: the nearest point runs from one end to the other.
+        // Past the pole of each edge, along it: the nearest point moves from one end to the other.
         for [p, q] in edges(&cone) {
             let (normal, middle) = (p.cross(q).normalized(), (p + q).normalized());
             let at = |k: i32| {
@@ -236,7 +238,7 @@ fn along_paths_the_projection_toward_rest_never_jumps() {
             let (a, b) = (rest.cross(a).normalized(), rest.cross(b).normalized());
             angle(a, b)
         };
-        // The boundary's length for a turn of azimuth, at its steepest.
+        // The largest change of the boundary per azimuth.
         let mut steepest: f64 = 0.0;
         for [p, q] in edges(&cone) {
             let at =

@@ -1,4 +1,4 @@
-//! What is refused, and what is said about it.
+//! Invalid cones and their errors.
 
 use crate::shapes::polar;
 use condyle_math::Vec3;
@@ -56,16 +56,17 @@ fn what_is_no_cone_is_refused_with_its_points_and_a_remedy() {
     for rest in [square[1].direction, square[0].direction + square[1].direction, Vec3::X] {
         refuse(rest, None, &square, 0, ConeError::RestOutside, "strictly inside");
     }
-    // A hook: the second point lies behind the third as rest sees them.
+    // A hook: seen from rest, the second point is behind the third.
     let hook = at(&[0.0, 120.0, 100.0, 240.0], &[1.0, 1.2, 0.5, 1.0]);
     let hidden = |from, to, refined| ConeError::Hidden { from, to, refined };
     refuse(z, None, &hook, 0, hidden(1, 2, false), "from point 1 to point 2");
     let reversed: Vec<ConePoint> = hook.iter().rev().copied().collect();
     refuse(z, None, &reversed, 0, hidden(1, 2, false), "from point 1 to point 2");
-    // Along a meridian but for 0.01 degrees.
+    // At 0.01 degrees to a meridian.
     let steep = at(&[0.0, 120.0, 120.01, 240.0], &[1.0, 0.5, 1.0, 1.0]);
     refuse(z, None, &steep, 0, hidden(1, 2, false), "does not see");
-    // Points whose curve swings past the opposite of rest, though their arcs do not.
+    // The refined boundary passes the direction opposite to rest, the arcs between the points do
+    // not.
     let wide = at(&[0.0, 90.0, 95.0, 180.0, 270.0], &[0.2, 3.0, 3.1, 0.2, 0.2]);
     refuse(z, None, &wide, 2, hidden(1, 2, true), "after subdivision");
     let twice = at(&[0.0, 144.0, 288.0, 72.0, 216.0], &[1.0; 5]);

@@ -1,4 +1,4 @@
-//! Twist, its bounds, and whole rotations; derivatives of everything.
+//! Twist, its bounds, and legal rotations, with the derivatives of all of them.
 
 use crate::shapes::{Random, SCALE, angle, around, edges, make, polar, shapes, twisted};
 use condyle_math::{Mat3, Quat, SwingTwist, Vec3};
@@ -48,7 +48,8 @@ fn gradients_are_central_differences() {
             };
             let measured = difference(rotation, omega, numbers);
             let exact = slopes(rotation);
-            // By how much the slopes change over two lengths: in proportion where nothing is bent.
+            // The change of the slopes over two step lengths: proportional to the length if there
+            // is no kink.
             let [short, long] = [2e-6, 4e-6].map(|h| {
                 let [minus, plus] =
                     [-h, h].map(|h| slopes(Quat::exp(omega * h).to_mat3() * rotation));
@@ -139,7 +140,7 @@ fn legal_rotations_are_kept_and_others_become_legal_at_once() {
                 assert!(cone.rows(legal.rotation).iter().all(|row| row.0 >= -1e-9), "{name}");
                 let again = cone.legal(legal.rotation);
                 assert!(!again.moved && again.rotation == legal.rotation, "{name}");
-                // The direction is the projected one; the twist is as before, or the nearer bound.
+                // The direction is the projected one; the twist is unchanged, or the nearer bound.
                 let (v, new) = (rotation * rest, legal.rotation * rest);
                 assert!((cone.project(v).direction - new).norm() < 1e-12, "{name}");
                 let bounds = cone.twist_bounds(new).unwrap().0;
@@ -176,7 +177,7 @@ fn on_and_over_edges_and_corners_an_answer_is_final_too() {
                         assert!(rows.iter().all(|row| row.0 >= -1e-9), "{name} {rows:?}");
                         let again = cone.legal(legal.rotation);
                         assert!(!again.moved && again.rotation == legal.rotation, "{name}");
-                        // The way in to a depth of 1e-14, seen at 1e-3 or more, in steps of four.
+                        // Steps of factor 4 to a depth of 1e-14, at a sine of 1e-3 or more.
                         let off = angle(legal.rotation * rest, v);
                         let same = beyond == 1.0 || projection == Projection::TowardRest;
                         assert!(!same || off < 4e-11, "{name} {off}");

@@ -1,10 +1,10 @@
-//! Polygons to test with, and the slow and obvious geometry of their edges.
+//! Test polygons, and a slow reference implementation of the geometry of their edges.
 
 use condyle_math::{Mat3, Quat, Vec3};
 use condyle_model::{Cone, ConePoint, Projection};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Fewer cases where the compiler does not optimise.
+/// Fewer cases in unoptimised builds.
 pub(crate) const SCALE: usize = if cfg!(debug_assertions) { 1 } else { 10 };
 
 /// SplitMix64: the same numbers on every machine.
@@ -52,7 +52,7 @@ pub(crate) fn around(rest: Vec3, angles: &[f64]) -> Vec<Vec3> {
     angles.iter().enumerate().map(|(i, &angle)| polar(rest, azimuth(i), angle)).collect()
 }
 
-/// Teeth with one edge nearly along a meridian: rest sees it at 0.08 degrees.
+/// Teeth with one edge nearly along a meridian, at 0.08 degrees to it.
 fn saw(rest: Vec3) -> Vec<Vec3> {
     let tooth = |i: u32| {
         let azimuth = 0.3 + f64::from(i) * 0.25 * TAU;
@@ -83,7 +83,7 @@ pub(crate) fn shapes() -> Vec<(&'static str, Vec3, Vec<Vec3>, u32)> {
             let azimuth = (i as f64 + random.within(-0.2, 0.2)) * TAU / 7.0;
             polar(rest, azimuth, random.within(0.5, 1.6))
         });
-        // Clockwise, to be turned round.
+        // Clockwise, to be reversed.
         let points: Vec<Vec3> = points.collect::<Vec<_>>().into_iter().rev().collect();
         all.push(("random", rest, points, subdivisions));
     }
@@ -95,7 +95,7 @@ pub(crate) fn make(rest: Vec3, points: &[Vec3], subdivisions: u32, projection: P
     Cone::new(rest, None, points, subdivisions, projection).unwrap()
 }
 
-/// A cone with another pair of bounds at every other point.
+/// A cone with its own twist bounds at every other point.
 pub(crate) fn twisted(
     rest: Vec3,
     points: &[Vec3],

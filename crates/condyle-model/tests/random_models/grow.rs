@@ -1,4 +1,4 @@
-//! Models grown at random from a seed.
+//! Random models from a seed.
 
 use std::collections::HashSet;
 
@@ -120,12 +120,12 @@ pub(crate) fn random_model(seed: u64) -> (Model, Vec<f64>) {
         for c in 0..1 + dice.below(5) {
             grow_component(&mut b, &mut dice, set, c, &mut scalars, &mut transforms, &mut bent);
         }
-        // Undo the parent, or all, before a turn of its own.
+        // Cancel the rotation of the parent, or of all ancestors, before its own rotation.
         let ancestors =
             parent.map_or(vec![], |p| if dice.below(2) == 0 { vec![p] } else { above(p) });
         let rigid = ancestors.iter().all(|id| !bent_segments.contains(id));
         if dice.below(3) == 0 && rigid && !ancestors.is_empty() {
-            // Glide on an ancestor instead, under a turn of the joint's own.
+            // Glide on an ancestor instead, after a rotation of the joint itself.
             if dice.below(2) == 0 {
                 let surface = ancestors[ancestors.len() - 1];
                 let before = b.rotate(set, "before", scalars[0], Vec3::Z);
@@ -144,7 +144,7 @@ pub(crate) fn random_model(seed: u64) -> (Model, Vec<f64>) {
             let motion = b.product(set, "compensated", vec![undo, own]);
             b.output(set, segment, motion);
         } else if !transforms.is_empty() && dice.below(8) > 0 {
-            // Often the newest transform, sometimes one that moves another segment already.
+            // Often the newest transform, sometimes one that already moves another segment.
             let pick = transforms.len() - 1 - dice.below(transforms.len().min(3));
             b.output(set, segment, transforms[pick]);
             if bent.contains(&transforms[pick]) {
@@ -302,7 +302,7 @@ fn grow_component(
             transforms.push(b.pivot(set, &name, Pivot::new(angle, axis, centre).unwrap()));
         }
         7 => {
-            // Damped inputs keep the arc away from its declared jump at a right angle.
+            // Small inputs keep the arc away from its discontinuity near a right angle.
             let angles = [any(dice), any(dice), any(dice)].map(|angle| {
                 let name = format!("{name}_damped_{}", dice.below(1 << 30));
                 b.map(set, &name, angle, Function::linear(0.1, 0.0))
@@ -321,7 +321,7 @@ fn grow_component(
     }
 }
 
-/// A user's law that turns, lifts and, with its second input, stretches.
+/// A user's law that rotates, lifts and, with its second input, scales.
 #[derive(Debug)]
 pub(crate) struct Cam {
     pub(crate) lift: f64,
@@ -342,7 +342,7 @@ impl Law for Cam {
     }
 }
 
-/// An ellipsoid of the size of ribs, and points that may reach it.
+/// An ellipsoid of the size of a rib cage, and points that may reach it.
 fn grow_gliding(dice: &mut Dice) -> Gliding {
     let pose = Affine::new(Quat::exp(dice.vector(2.0)).to_mat3(), dice.vector(0.2));
     let radii = Vec3::new(0.2, 0.35, 0.25) + dice.vector(0.08);

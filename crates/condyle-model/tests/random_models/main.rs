@@ -1,4 +1,4 @@
-//! Random trees that mix every component, against a naive twin and against differences.
+//! Random trees with all components, against a naive reference and against finite differences.
 
 mod grow;
 mod naive;
@@ -82,7 +82,7 @@ fn the_jacobian_equals_central_differences_and_duals() {
             program
                 .evaluate(&retract(&model, &stored, direction, -h), Mode::Open, &mut behind)
                 .unwrap();
-            // Seeding the stored numbers with the retraction's slope makes the dual answer exact.
+            // Seeded with the derivative of the retraction, the dual evaluation is exact.
             let slope: Vec<f64> = retract(&model, &stored, direction, 1e-5)
                 .iter()
                 .zip(retract(&model, &stored, direction, -1e-5))
@@ -222,7 +222,7 @@ fn a_million_poses_are_finite_whatever_is_asked() {
         let mut asked = stored.clone();
         for number in 0..1000 {
             for value in &mut asked {
-                // Half of the numbers as a person would ask for them, the rest of any size.
+                // Half of the numbers are plausible, the others of any size.
                 let size = if number % 2 == 0 { 3.0 } else { sizes[dice.below(sizes.len())] };
                 *value = if size.is_finite() { dice.within(size) } else { size };
             }

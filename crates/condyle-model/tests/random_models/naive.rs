@@ -1,4 +1,4 @@
-//! The slow and obvious twin of a program: every value is computed afresh by walking the model.
+//! A slow reference for the evaluation: every value is recomputed by walking the model.
 
 use super::scan;
 use condyle_math::{Affine, EulerOrder, Mat3, Quat, Vec3};
@@ -16,11 +16,11 @@ pub(crate) struct Evaluator<'a> {
     stored: &'a [f64],
     mode: Mode,
     needed: HashSet<ComponentId>,
-    /// Set where a contact is so near to a tangency that its angle means little.
+    /// Set if a contact is so near to a tangency that its angle is ill-conditioned.
     pub(crate) doubtful: Cell<bool>,
 }
 
-/// What a limit holds: one source for each of its outputs.
+/// The sources that a limit component limits: one for each of its outputs.
 fn held(model: &Model, limit: ComponentId) -> Vec<Source> {
     match &model.components()[limit.index()].component {
         Component::Depend(c) => vec![c.passive],
@@ -61,7 +61,7 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// What was asked for, inside the range in posed mode.
+    /// The requested numbers, clamped to the range in posed mode.
     fn asked(&self, id: CoordinateId) -> Vec<f64> {
         let coordinate = self.model.coordinate(id);
         let mut values = self.stored[self.model.stored_range(id)].to_vec();
@@ -71,7 +71,7 @@ impl<'a> Evaluator<'a> {
         values
     }
 
-    /// The limit farthest along the way from a coordinate, among those that something reads.
+    /// The last of the limits that act on a coordinate, among those that something reads.
     fn last_limit(&self, id: CoordinateId) -> Option<(usize, ComponentId, u32)> {
         let mut best: Option<(usize, ComponentId, u32)> = None;
         for limit in self.model.component_ids().filter(|id| self.needed.contains(id)) {
@@ -86,7 +86,7 @@ impl<'a> Evaluator<'a> {
         best
     }
 
-    /// How many limits lie between a coordinate and a source that is this coordinate, held.
+    /// The number of limits between a coordinate and a source that is this coordinate, limited.
     fn limits_between(&self, id: CoordinateId, source: Source) -> Option<usize> {
         match source {
             Source::Coordinate(other) => (other == id).then_some(0),
@@ -109,7 +109,7 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// One output of a cone: the legal rotation taken apart by Euler angles, all wraps tried.
+    /// One output of a cone: the legal rotation decomposed into Euler angles, with all wraps tried.
     fn cone(&self, cone: &JointCone, output: u32) -> Vec<f64> {
         let limit = &cone.cone;
         let (sources, axes) = match &cone.of {
@@ -207,7 +207,7 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// The two turns of a contact, found by scanning.
+    /// The two rotations of a contact, found by scanning.
     fn contact(&self, c: &Contact) -> Affine {
         let law = &c.law;
         let segment = self.model.segment(c.segment);
@@ -219,7 +219,7 @@ impl<'a> Evaluator<'a> {
         let back = Affine::new(back, -(back * surface.translation));
         let pose = back * parent * segment.joint_in_parent * before;
         let drivers: Vec<f64> = c.drivers.iter().map(|&d| self.scalar(d)).collect();
-        // Points and axis are the segment's own; it turns in the frame of its joint.
+        // Points and axis are in the segment's frame; the rotations are in its joint frame.
         let joint = segment.joint_in_segment.rigid_inverse();
         let [first, second] = self.blended(law.pairs(), &drivers).map(|point| joint * point);
         let axis = joint.linear * law.axis();

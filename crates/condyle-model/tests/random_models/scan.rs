@@ -1,9 +1,9 @@
-//! A point turned onto an ellipsoid by looking at every angle.
+//! Rotation of a point onto an ellipsoid by a scan over all angles.
 
 use condyle_math::{Affine, Quat, Vec3};
 use std::f64::consts::{PI, TAU};
 
-/// The angle that [`turn`] found, and whether rounding could have made it another.
+/// The angle that [`turn`] found, and whether rounding could have changed the choice.
 pub(crate) struct Found {
     pub(crate) angle: f64,
     pub(crate) doubtful: bool,
@@ -50,7 +50,8 @@ pub(crate) fn turn(pose: Affine, radii: Vec3, axis: Vec3, point: Vec3) -> Found 
     if extrema.is_empty() {
         return Found { angle: 0.0, doubtful: true };
     }
-    // A root near a tangency, or a choice between equals, is nothing to compare 12 digits of.
+    // A root near a tangency, or a choice between equally near ones, cannot be compared to 12
+    // digits.
     let touching = near < 1e-3 * size;
     if roots.is_empty() {
         let (angle, next) = rank(extrema, &|x| f(x).abs());

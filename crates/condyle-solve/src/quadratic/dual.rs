@@ -6,11 +6,11 @@ use super::{
 };
 use crate::cholesky::dot;
 
-/// An equality row shorter than this fraction of the longest is taken for zero.
+/// An equality row with a norm below this fraction of the largest counts as zero.
 const NULL_ROW: f64 = 1e-12;
-/// Dependent rows may disagree by this fraction of the values that are compared.
+/// The right-hand sides of dependent rows may differ by this fraction of the terms compared.
 const CONSISTENCY_RELATIVE: f64 = 1e-8;
-/// A violation below this fraction of the unconstrained step is rounding.
+/// A violation below this fraction of the norm of the unconstrained minimiser is not enforced.
 const ROUNDING: f64 = 1e-20;
 
 /// Whether the point satisfies all inequality rows.
@@ -21,7 +21,7 @@ pub(super) fn rows_satisfied(program: &QuadraticProgram<'_>, solution: &Solution
         let row = program.inequality_row(k);
         let value = program.inequality_values[k];
         let tolerance = FEASIBILITY * (value.abs() + dot(row, row).sqrt() * size);
-        // False for what is not a number, or infinite in the wrong place: the dual method reports it.
+        // False for NaN and for misplaced infinities, which the dual method reports.
         value == f64::NEG_INFINITY
             || (tolerance < f64::INFINITY
                 && slack(program, Constraint::Inequality(k), d) >= -tolerance)
@@ -50,8 +50,8 @@ struct Run<'a> {
     solution: &'a mut Solution,
     iteration_limit: u32,
     consistency: f64,
-    /// Violations up to this distance pass: rounding in `d`, from the size of the unconstrained step,
-    /// and what dependent constraints were found to disagree by.
+    /// Violations up to this distance are not enforced: a part for rounding, relative to the
+    /// unconstrained minimiser, plus the accepted inconsistency of dependent constraints.
     floor: f64,
 }
 
@@ -61,6 +61,7 @@ impl Run<'_> {
             .begin(self.program)
             .map_err(|failure| Status::NotPositiveDefinite { variable: failure.index })?;
         self.check_rows()?;
+        // With no members one Newton step from 0 is the unconstrained minimiser -H⁻¹ g.
         self.solution.d.fill(0.0);
         self.set.refine(self.program, &mut self.solution.d);
         self.floor = ROUNDING * dot(&self.solution.d, &self.solution.d).sqrt();
@@ -68,9 +69,9 @@ impl Run<'_> {
         self.add_last_active();
         self.settle()?;
 
-        // Whether `d` is as exact as the factorisation allows; steps leave rounding behind.
+        // Whether `d` was refined since the last step; steps accumulate rounding errors.
         let mut polished = true;
-        // Whether the claim of infeasibility would be made on exact numbers.
+        // Whether the failure to enforce a constraint was repeated after a refinement.
         let mut confirmed = false;
         loop {
             match self.most_violated() {
@@ -91,7 +92,7 @@ impl Run<'_> {
         }
     }
 
-    /// Numbers that must be finite are; a row `G_k d ≥ ∞` cannot hold.
+    /// Checks that rows and values are finite; a row `G_k d ≥ ∞` cannot hold.
     fn check_rows(&mut self) -> Result<(), Status> {
         let finite = |x: &[f64]| x.iter().all(|x| x.is_finite());
         let values = self.program.inequality_values;
@@ -117,11 +118,11 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Makes fixed variables and equality rows members; drops dependent ones that agree.
+    /// Adds fixed variables and equality rows as members; skips dependent rows that are consistent.
     fn add_equalities(&mut self) -> Result<(), Status> {
         for i in 0..self.program.n() {
             if self.solution.bounds[i] == BoundState::Fixed {
-                // Unit rows are independent of each other.
+                // Unit rows are linearly independent: no check is needed.
                 self.set.transform(self.program, Constraint::Lower(i));
                 self.set.add(Constraint::Lower(i), 0.0);
             }
@@ -154,7 +155,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Makes the active set of the last call members, as far as it is independent.
+    /// Adds the active set of the last call, as far as it is linearly independent.
     fn add_last_active(&mut self) {
         for i in 0..self.program.n() {
             match self.solution.bounds[i] {
@@ -166,6 +167,7 @@ impl Run<'_> {
         for k in 0..self.program.inequality_values.len() {
             if self.solution.active_rows[k] {
                 let row = Constraint::Inequality(k);
+                // The row may have been switched off since the last call.
                 if self.program.inequality_values[k] == f64::NEG_INFINITY {
                     mark(self.solution, row, false);
                 } else {
@@ -183,16 +185,18 @@ impl Run<'_> {
         mark(self.solution, constraint, independent);
     }
 
-    /// Solves with the members as equalities, dropping inequalities whose multiplier is negative: `d`
-    /// is then the minimiser over the members.
+    /// Solves with the members as equalities, dropping inequalities with a negative multiplier
+    /// until none is left: `d` is then the minimiser subject to the members, and dual feasible.
     fn settle(&mut self) -> Result<(), Status> {
         self.count()?;
         loop {
+            // The second Newton step is iterative refinement.
             self.set.refine(self.program, &mut self.solution.d);
             let size = self.set.refine(self.program, &mut self.solution.d);
             let mut worst = None;
             let mut least = -OPTIMALITY * size;
             for k in self.set.equalities..self.set.members().len() {
+                // Multiplier times norm: independent of the scale of the row.
                 let push = self.set.u[k] * self.set.norm(self.set.members()[k]);
                 if push < least {
                     (worst, least) = (Some(k), push);
@@ -210,12 +214,12 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// The inactive constraint that `d` violates by the largest distance.
+    /// The inactive constraint that `d` violates by the largest Euclidean distance.
     fn most_violated(&self) -> Option<Constraint> {
         let d = &self.solution.d;
         let size = FEASIBILITY * dot(d, d).sqrt() + self.floor;
         let mut worst = (0.0, None);
-        // `slack` and `value` in units of d.
+        // `slack` and `value` are divided by the norm of the row: distances in the unit of d.
         let mut consider = |constraint, slack: f64, value: f64| {
             if slack < -(FEASIBILITY * value.abs() + size) && slack < worst.0 {
                 worst = (slack, Some(constraint));
@@ -242,9 +246,10 @@ impl Run<'_> {
         worst.1
     }
 
-    /// Raises the multiplier of a violated constraint until it is satisfied, dropping members whose
-    /// multipliers reach zero on the way. `false` if that never ends, since the dual is unbounded, or
-    /// if the constraint depends on the members and `d` is not exact enough to say that it is violated.
+    /// Increases the multiplier of a violated constraint until it is satisfied, dropping members
+    /// whose multipliers reach zero on the way (Goldfarb and Idnani, step 2). Returns `false` if
+    /// the dual is unbounded, or if the constraint depends linearly on the members and `d` was not
+    /// refined, so that its violation may be rounding.
     fn enforce(&mut self, constraint: Constraint, exact: bool) -> Result<bool, Status> {
         let mut multiplier = 0.0;
         loop {
@@ -255,8 +260,10 @@ impl Run<'_> {
             }
             let (q, equalities) = (self.set.members().len(), self.set.equalities);
 
-            // Coefficients below the threshold are rounding; it is wider where dividing by them would
-            // be the only way to go on.
+            // Dual ratio test: the multiplier of member k falls by r_k per unit of t, and the first
+            // to reach zero limits the step. Coefficients below the threshold count as zero; it is
+            // larger for a dependent constraint, where such a coefficient alone would determine the
+            // step.
             let threshold = if independent { 1e-2 * DEPENDENCE } else { DEPENDENCE }
                 * self.set.norm(constraint);
             let mut partial = (f64::INFINITY, 0);
@@ -269,6 +276,8 @@ impl Run<'_> {
                     }
                 }
             }
+            // The step z = J₂ J₂ᵀ n changes the slack by nᵀ z = |J₂ᵀ n|² per unit of t; it is not 0
+            // for an independent constraint. A dependent one cannot be reached by moving d.
             let tail = &self.set.transformed[q..];
             let full = if independent {
                 (-slack(self.program, constraint, &self.solution.d) / dot(tail, tail)).max(0.0)
@@ -276,6 +285,7 @@ impl Run<'_> {
                 f64::INFINITY
             };
             let t = partial.0.min(full);
+            // No limit on the multiplier: the dual is unbounded and the primal infeasible.
             if t == f64::INFINITY {
                 return Ok(false);
             }
@@ -298,8 +308,8 @@ impl Run<'_> {
         }
     }
 
-    /// By how much the limit of a dependent constraint, last transformed, exceeds what the limits of
-    /// the members imply for it, and the sum of the absolute values compared.
+    /// For a dependent constraint n = Σ r_k n_k, last transformed: its right-hand side less the one
+    /// that the members imply, b - Σ r_k b_k, and the sum of the absolute terms.
     fn disagreement(&self, constraint: Constraint) -> (f64, f64) {
         let value = limit(self.program, constraint);
         let (mut rest, mut size) = (value, value.abs());
@@ -311,8 +321,8 @@ impl Run<'_> {
         (rest, size)
     }
 
-    /// Accepts that a dependent constraint is violated if that is within what dependent rows may
-    /// disagree by; otherwise no point satisfies all constraints.
+    /// Accepts the violation of a dependent constraint within the consistency tolerance; beyond it
+    /// the program is infeasible.
     fn forgive(&mut self, constraint: Constraint) -> Result<(), Status> {
         let norm = self.set.norm(constraint);
         let (rest, size) = self.disagreement(constraint);
@@ -321,11 +331,13 @@ impl Run<'_> {
             self.blame(constraint);
             return Err(Status::Infeasible);
         }
+        // Twice the violation, so that the same constraint is not selected again.
         self.floor += 2.0 * violation.max(0.0) / norm;
         Ok(())
     }
 
-    /// Notes a dependent constraint and the members it contradicts.
+    /// Reports a dependent constraint and the members that it contradicts: those with a nonzero
+    /// coefficient in its linear combination.
     fn blame(&mut self, constraint: Constraint) {
         let threshold = DEPENDENCE * self.set.norm(constraint);
         let conflict = &mut self.solution.conflict;

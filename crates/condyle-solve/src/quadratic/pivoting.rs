@@ -3,24 +3,24 @@
 use super::{BoundState, FEASIBILITY, OPTIMALITY, QuadraticProgram, Solution, Status};
 use crate::cholesky;
 
-/// Rounds in which every misplaced variable may move without fewer being misplaced than ever before;
-/// after them one variable moves at a time.
+/// How many rounds that do not reach a new minimum of the number of misplaced variables exchange
+/// all of them; after that one variable is exchanged at a time.
 const PATIENCE: u32 = 3;
-/// Factorisations after which the dual method, whose steps are cheaper, takes over.
+/// Factorisations after which the dual method, whose steps are cheaper, is used instead.
 const ROUNDS: u32 = 25;
 
 #[derive(Debug, Clone)]
 pub(super) struct Pivoting {
-    /// The factor of the free block, packed to its size.
+    /// The factor of the free block, `count × count`, at the front.
     factor: Vec<f64>,
-    /// The free variables in ascending order, then unused.
+    /// The free variables in ascending order, in the first `count` places.
     free: Vec<usize>,
     /// The right-hand side and solution of the free block.
     step: Vec<f64>,
-    /// `g + H d` of the held variables' part of `d`, and the sum of the absolute terms.
+    /// `g + H d` with only the variables held at a bound in `d`, and the sum of the absolute terms.
     held_gradient: Vec<f64>,
     held_size: Vec<f64>,
-    /// The state that each misplaced variable should move to.
+    /// The state that each variable should have.
     wanted: Vec<BoundState>,
 }
 
@@ -28,9 +28,9 @@ pub(super) struct Pivoting {
 pub(super) enum Outcome {
     /// Optimal over the bounds.
     Solved,
-    /// No answer, and the status says why.
+    /// No solution; the status gives the reason.
     Failed,
-    /// Progress is too slow; the states are a warm start.
+    /// Too many factorisations; the states are a warm start for the dual method.
     Stalled,
 }
 
@@ -46,7 +46,10 @@ impl Pivoting {
         }
     }
 
-    /// Solves the free block for the present states into `d`.
+    /// Solves `H_ff d_f = -(g_f + H_fb d_b)` for the free variables f, with those in b at their
+    /// bounds.
+    ///
+    /// Returns the number of free variables, or the variable whose pivot failed.
     fn solve_free(
         &mut self,
         program: &QuadraticProgram<'_>,
@@ -72,6 +75,7 @@ impl Pivoting {
             if value == 0.0 {
                 continue;
             }
+            // Only the lower triangle of H is given.
             for j in 0..n {
                 let term = program.hessian[i.max(j) * n + i.min(j)] * value;
                 self.held_gradient[j] += term;
@@ -79,6 +83,8 @@ impl Pivoting {
             }
         }
 
+        // Row j of the upper triangle is column j of the lower one: the transpose that
+        // `factor_upper` reads. With all variables free the indices need no look-up.
         let factor = &mut self.factor[..count * count];
         if count == n {
             for i in 0..n {
@@ -105,7 +111,10 @@ impl Pivoting {
         Ok(count)
     }
 
-    /// Counts the variables in the wrong state and notes where they belong; fills the multipliers.
+    /// Counts the variables in the wrong state and sets `wanted`; fills the bound multipliers.
+    ///
+    /// A free variable is misplaced if it violates a bound, a held one if its multiplier has the
+    /// wrong sign.
     fn misplaced(
         &mut self,
         program: &QuadraticProgram<'_>,
@@ -127,6 +136,8 @@ impl Pivoting {
                     self.wanted[i] = BoundState::Upper;
                 }
             } else {
+                // z = g + H d in this row, with the free variables added; `scale` bounds its
+                // rounding.
                 let (mut z, mut scale) = (self.held_gradient[i], self.held_size[i]);
                 for (x, &j) in self.step.iter().zip(&self.free[..free]) {
                     let term = program.hessian[i.max(j) * n + i.min(j)] * x;
@@ -171,8 +182,8 @@ pub(super) fn solve(
         let count = work.misplaced(program, solution, free);
         if count == 0 {
             for i in 0..n {
-                // A free variable may be outside by the tolerance; a multiplier may have the wrong
-                // sign by it.
+                // Within the tolerances a free variable may violate its bound and a multiplier may
+                // have the wrong sign: both are clamped.
                 solution.d[i] = solution.d[i].clamp(program.lower[i], program.upper[i]);
                 let z = &mut solution.bound_multipliers[i];
                 match solution.bounds[i] {
@@ -189,6 +200,7 @@ pub(super) fn solve(
         } else {
             patience = patience.saturating_sub(1);
         }
+        // Block exchange, or Murty's rule: always the misplaced variable with the largest index.
         if patience > 0 {
             solution.bounds.copy_from_slice(&work.wanted);
         } else if let Some(last) = (0..n).rev().find(|&i| work.wanted[i] != solution.bounds[i]) {

@@ -19,7 +19,7 @@ pub struct QuadraticProgram<'a> {
     pub lower: &'a [f64],
     /// Upper bounds, `n`; `+∞` for none.
     pub upper: &'a [f64],
-    /// `C`, `m_e × n` row-major. Rows may depend on each other.
+    /// `C`, `m_e × n` row-major. Rows may be linearly dependent.
     pub equality_rows: &'a [f64],
     /// `c`, `m_e`.
     pub equality_values: &'a [f64],

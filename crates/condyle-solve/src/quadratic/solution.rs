@@ -1,4 +1,4 @@
-//! What a call of the solver leaves behind.
+//! The result of a call of the solver.
 
 use super::QuadraticProgram;
 use crate::cholesky::{axpy, dot};
@@ -6,25 +6,26 @@ use crate::cholesky::{axpy, dot};
 /// How a call ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// The point satisfies the optimality conditions.
+    /// The point satisfies the KKT conditions.
     Solved,
-    /// No point satisfies all constraints; [`Solution::conflict`] names some that contradict.
+    /// No point satisfies all constraints; [`Solution::conflict`] lists some that contradict.
     Infeasible,
-    /// The cap on iterations was reached; the point may violate constraints.
+    /// The limit on iterations was reached; the point may violate constraints.
     IterationLimit,
-    /// `H` is not positive definite on the variables that were not held by a bound.
+    /// `H` is not positive definite on the variables that were not held at a bound.
     NotPositiveDefinite {
         /// The variable whose pivot failed.
         variable: usize,
     },
-    /// A number in the data is NaN or infinite where only bounds and `h` may be, or overflowed.
+    /// The data contain NaN, or an infinity other than in bounds or `h`, or the solution
+    /// overflowed.
     NotFinite,
 }
 
-/// Where a variable is with respect to its bounds; it is the warm start of the next call.
+/// The state of a variable with respect to its bounds; the warm start of the next call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BoundState {
-    /// Not held by a bound.
+    /// Not held at a bound; multiplier 0.
     Free,
     /// Held at its lower bound, multiplier ≥ 0.
     Lower,
@@ -109,7 +110,7 @@ impl Solution {
         }
     }
 
-    /// Clears everything but the active set.
+    /// Clears everything except the active set and the status.
     pub(super) fn begin(&mut self) {
         self.d.fill(0.0);
         self.clear_multipliers();
@@ -131,12 +132,12 @@ impl Solution {
             && finite(&self.inequality_multipliers)
     }
 
-    /// The minimiser, `n`. Within the bounds exactly when solved.
+    /// The minimiser, `n`. If solved, it satisfies the bounds exactly.
     pub fn d(&self) -> &[f64] {
         &self.d
     }
 
-    /// `z`, `n`: positive where a lower bound pushes, negative where an upper bound does.
+    /// `z`, `n`: positive for an active lower bound, negative for an active upper bound.
     pub fn bound_multipliers(&self) -> &[f64] {
         &self.bound_multipliers
     }
@@ -161,7 +162,7 @@ impl Solution {
         &self.active_rows
     }
 
-    /// When infeasible, constraints that cannot hold together; otherwise empty.
+    /// If infeasible, constraints that contradict each other; otherwise empty.
     pub fn conflict(&self) -> &[Constraint] {
         &self.conflict
     }

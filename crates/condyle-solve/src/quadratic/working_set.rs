@@ -1,14 +1,15 @@
 //! The active constraints of the dual method and their factorisation.
 //!
 //! With `H = L Lᵀ`, an orthogonal `Q` and the matrix `N` whose columns are the normals of the active
-//! constraints, `J = L⁻ᵀ Q` is kept such that
+//! constraints, the method maintains `J = L⁻ᵀ Q` such that
 //!
 //! ```text
 //! Jᵀ H J = 1        Jᵀ N = [R; 0],  R upper triangular
 //! ```
 //!
-//! `Jᵀ` is stored by rows and `R` by columns, so that reflections, rotations and triangular solves
-//! run over contiguous memory.
+//! The first `q` columns of `J`, one for each member, are `J₁`; the others, `J₂`, span the
+//! directions that keep all members active. `Jᵀ` is stored by rows and `R` by columns, so that
+//! reflections, rotations and triangular solves run over contiguous memory.
 
 use super::solution::add_symmetric_product;
 use super::{BoundState, Constraint, DEPENDENCE, QuadraticProgram, Solution};
@@ -23,13 +24,13 @@ pub(super) struct WorkingSet {
     r: Vec<f64>,
     /// The active constraints in the order of the columns of `R`; equalities come first.
     members: Vec<Constraint>,
-    /// How many members at the front are equalities and never leave.
+    /// The number of members at the front that are equalities and are never dropped.
     pub(super) equalities: usize,
     /// The multipliers of the members.
     pub(super) u: Vec<f64>,
     /// `Jᵀ` times the normal last given to [`WorkingSet::transform`].
     pub(super) transformed: Vec<f64>,
-    /// `R⁻¹` times its head: the normal's coefficients in the members' normals.
+    /// `R⁻¹` times its first `q` entries: the coefficients of the normal in those of the members.
     pub(super) coefficients: Vec<f64>,
     scratch: Vec<f64>,
     residual: Vec<f64>,
@@ -55,12 +56,12 @@ impl WorkingSet {
         }
     }
 
-    /// Factors `H` and empties the set.
+    /// Factors `H` and clears the set: `Q = 1`, so `Jᵀ = L⁻¹`.
     pub(super) fn begin(&mut self, program: &QuadraticProgram<'_>) -> Result<(), PivotFailure> {
         let n = self.n;
         self.members.clear();
         self.equalities = 0;
-        // `r` is free until the first member: it holds the factor.
+        // `r` is unused until the first member is added: it holds the Cholesky factor meanwhile.
         for i in 0..n {
             for (j, x) in program.hessian[i * n..i * n + i + 1].iter().enumerate() {
                 self.r[j * n + i] = *x;
@@ -92,8 +93,8 @@ impl WorkingSet {
         }
     }
 
-    /// Expresses a constraint's normal in the present basis; `true` if it is independent of the
-    /// members.
+    /// Computes `Jᵀ n` for the normal `n` of a constraint; `true` if it is linearly independent of
+    /// the members.
     pub(super) fn transform(
         &mut self,
         program: &QuadraticProgram<'_>,
@@ -112,12 +113,13 @@ impl WorkingSet {
         }
         self.coefficients[..q].copy_from_slice(&self.transformed[..q]);
         solve_upper(&self.r, n, &mut self.coefficients[..q]);
+        // |Jᵀ n|² = nᵀ H⁻¹ n; the tail is the part that the members do not span.
         let tail = &self.transformed[q..];
         let all = dot(&self.transformed, &self.transformed);
         dot(tail, tail) > DEPENDENCE * DEPENDENCE * all
     }
 
-    /// `d += t z`, where `z` is the transformed normal's direction that keeps all members active.
+    /// `d += t z` with `z = J₂ J₂ᵀ n`, the direction that keeps all members active.
     pub(super) fn step(&self, t: f64, d: &mut [f64]) {
         let q = self.members.len();
         subtract_rows(d, &self.jt, self.n, 0, |k| -t * self.transformed[k], q..self.n);
@@ -129,7 +131,8 @@ impl WorkingSet {
         let tail = &mut self.transformed[q..];
         let mut corner = tail[0];
         if tail.len() > 1 {
-            // Reflect the tail onto its first axis: v = tail - corner e₁, P = 1 - β v vᵀ.
+            // Householder reflection of the tail onto its first axis: v = tail - corner e₁,
+            // P = 1 - β v vᵀ, β = 2 / vᵀv. With corner opposite in sign to tail[0] nothing cancels.
             let norm = dot(tail, tail).sqrt();
             corner = -norm.copysign(tail[0]);
             let beta = 1.0 / (norm * (norm + tail[0].abs()));
@@ -148,18 +151,19 @@ impl WorkingSet {
         self.members.push(constraint);
     }
 
-    /// Removes member `k` and restores the triangle by rotations.
+    /// Removes member `k` and restores the triangular form by Givens rotations.
     pub(super) fn drop_member(&mut self, k: usize) -> Constraint {
         let n = self.n;
         let dropped = self.members.remove(k);
         let q = self.members.len();
         for j in k..q {
             self.u[j] = self.u[j + 1];
-            // Column j + 1 has j + 2 entries; the last is below the new diagonal.
+            // Column j + 1 has j + 2 entries; as column j its last one is below the diagonal.
             self.r.copy_within((j + 1) * n..(j + 1) * n + j + 2, j * n);
         }
         for i in k..q {
             let (a, b) = (self.r[i * n + i], self.r[i * n + i + 1]);
+            // Not 0: b was a diagonal entry of R.
             let length = a.hypot(b);
             let (cos, sin) = (a / length, b / length);
             for j in i..q {
@@ -174,8 +178,13 @@ impl WorkingSet {
         dropped
     }
 
-    /// One Newton step on the optimality conditions of the members as equalities: from any `d` and `u`
-    /// to the solution, from near the solution nearer. Returns the size of the gradient there.
+    /// One Newton step on the KKT conditions with the members as equalities. The conditions are
+    /// linear: the step leads from any `d` and `u` to the solution, and repeated, it reduces
+    /// rounding errors. Returns the largest absolute entry of `g` and `u`, the scale of the
+    /// multipliers.
+    ///
+    /// With δd = J y the conditions H δd - N δu = -ρ and Nᵀ δd = b - Nᵀ d become y - [R; 0] δu =
+    /// -Jᵀ ρ and Rᵀ y₁ = b - Nᵀ d.
     pub(super) fn refine(&mut self, program: &QuadraticProgram<'_>, d: &mut [f64]) -> f64 {
         let (n, q) = (self.n, self.members.len());
         // ρ = H d + g - N u
@@ -211,14 +220,16 @@ impl WorkingSet {
         }
         solve_upper(&self.r, n, &mut change[..q]);
         axpy(&mut self.u[..q], 1.0, &change[..q]);
+        // d += J y
         subtract_rows(d, &self.jt, n, 0, |k| -y[k], 0..n);
         size
     }
 
-    /// Writes the multipliers and puts `d` exactly on its active bounds.
+    /// Writes the multipliers to the solution and sets `d` exactly to its active bounds.
     pub(super) fn report(&self, program: &QuadraticProgram<'_>, solution: &mut Solution) {
         solution.clear_multipliers();
         for (k, (&member, &u)) in self.members.iter().zip(&self.u).enumerate() {
+            // Only the multipliers of equalities may be negative.
             let positive = if k < self.equalities { u } else { u.max(0.0) };
             match member {
                 Constraint::Lower(i) => {
@@ -261,7 +272,7 @@ pub(super) fn limit(program: &QuadraticProgram<'_>, constraint: Constraint) -> f
     }
 }
 
-/// Notes in the solution's active set that a constraint became active or inactive.
+/// Records in the active set of the solution that a constraint became active or inactive.
 pub(super) fn mark(solution: &mut Solution, constraint: Constraint, active: bool) {
     match constraint {
         Constraint::Lower(i) if active => solution.bounds[i] = BoundState::Lower,
@@ -272,7 +283,7 @@ pub(super) fn mark(solution: &mut Solution, constraint: Constraint, active: bool
     }
 }
 
-/// `x := R⁻¹ x`, `R` by columns of stride `n`.
+/// `x := R⁻¹ x` by back substitution; `R` is stored by columns with stride `n`.
 fn solve_upper(r: &[f64], n: usize, x: &mut [f64]) {
     for k in (0..x.len()).rev() {
         let column = &r[k * n..k * n + k + 1];

@@ -1,4 +1,5 @@
-//! Random programs, the optimality conditions written out, and a twin that tries all active sets.
+//! Random programs, a check of the KKT conditions, and a reference solver that enumerates all
+//! active sets.
 
 use condyle_solve::quadratic::{Constraint, QuadraticProgram, Solution, Status, Workspace};
 
@@ -68,7 +69,8 @@ fn length(row: &[f64]) -> f64 {
 }
 
 impl Instance {
-    /// Small integers; feasible or not. With little damping every variable has finite bounds.
+    /// Data of small integers; feasible or not. With little damping every variable has finite
+    /// bounds.
     pub(crate) fn integers(
         random: &mut Random,
         n: usize,
@@ -101,8 +103,8 @@ impl Instance {
         }
     }
 
-    /// Real numbers around a feasible point that lies on many of the constraints: bounds that are
-    /// equal, infinite or touched, rows that are duplicated, combined or touched.
+    /// Real numbers around a feasible point at which many of the constraints are active: bounds
+    /// that are equal, infinite or active, rows that are duplicated, linearly combined or active.
     pub(crate) fn feasible(
         random: &mut Random,
         n: usize,
@@ -153,7 +155,7 @@ impl Instance {
                 _ => (random.reals(n), random.real().abs()),
             };
             let value = match random.below(3) {
-                // The very limit of the row before, where it is a duplicate.
+                // Exactly the limit of the previous row, if this one is a duplicate of it.
                 0 if k > 0 && row == instance.inequality_rows[(k - 1) * n..] => {
                     instance.inequality_values[k - 1]
                 }
@@ -199,9 +201,9 @@ impl Instance {
         self.inequality_values.iter().enumerate().map(move |(k, h)| (row(k), *h))
     }
 
-    /// The twin: tries every choice of free and held variables and of active rows, solves for the
-    /// minimiser with those as equalities, and keeps the best that is feasible. The minimiser of the
-    /// program is among them, with independent active constraints.
+    /// The reference solver: for every choice of free and held variables and of active rows, finds
+    /// the minimiser with those as equalities, and returns the best feasible one. The minimiser of
+    /// the program is among them, with linearly independent active constraints.
     pub(crate) fn enumerate(&self) -> Option<(Vec<f64>, f64)> {
         let rows: Vec<(&[f64], f64)> = self.equalities().chain(self.inequalities()).collect();
         let mut best: Option<(Vec<f64>, f64)> = None;
@@ -230,7 +232,7 @@ impl Instance {
         best
     }
 
-    /// Solves [H Aᵀ; A 0] over the free variables; `None` if the rows depend on each other there.
+    /// Solves [H Aᵀ; A 0] over the free variables; `None` if the rows are linearly dependent there.
     fn minimiser(&self, held: &[Option<f64>], active: &[(&[f64], f64)]) -> Option<Vec<f64>> {
         let free: Vec<usize> = (0..self.n).filter(|&i| held[i].is_none()).collect();
         let mut basis: Vec<Vec<f64>> = vec![];
@@ -240,7 +242,7 @@ impl Instance {
                 let along = product(&rest, other);
                 rest.iter_mut().zip(other).for_each(|(x, o)| *x -= along * o);
             }
-            // Rows of small integers: what is left is either rounding or of the order of one.
+            // Rows of small integers: the remainder is either rounding or of the order of one.
             let size = length(&rest);
             if size < 1e-6 {
                 return None;
@@ -271,7 +273,7 @@ impl Instance {
         Some(d)
     }
 
-    /// Whether some point satisfies just these constraints (any objective will do).
+    /// Whether some point satisfies these constraints alone (with an arbitrary objective).
     pub(crate) fn conflict_is_feasible(&self, conflict: &[Constraint]) -> bool {
         let mut part = Self {
             lower: vec![f64::NEG_INFINITY; self.n],
@@ -343,13 +345,14 @@ fn eliminate(mut a: Vec<Vec<f64>>) -> Option<Vec<f64>> {
     Some(x)
 }
 
-/// The optimality conditions, each relative to the terms that it sums (the gradient to its largest).
+/// Checks the KKT conditions, each relative to the terms that it sums (the gradient to its largest
+/// entry).
 pub(crate) fn assert_optimal(instance: &Instance, solution: &Solution) {
     const TOLERANCE: f64 = 1e-9;
     assert_eq!(solution.status(), Status::Solved);
     assert!(solution.conflict().is_empty());
     let (n, d) = (instance.n, solution.d());
-    // The data are of the order of one: a point at the origin is known to 1e-15.
+    // The data are of the order of one: a point at the origin is accurate to 1e-15.
     let size = length(d) + 1e-6;
 
     let mut largest: (f64, f64) = (0.0, 0.0);

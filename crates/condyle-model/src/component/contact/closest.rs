@@ -1,17 +1,19 @@
-//! How far a point is from an ellipsoid.
+//! The signed distance of a point from an ellipsoid.
 //!
-//! The nearest point x of the ellipsoid with half axes r to a point p fulfils p - x = t·x/r²: the
-//! step from it is along the normal. So x = r²·p/(r² + t), and t is the root above -r_min² of
+//! The point x of the ellipsoid with half axes r that is nearest to a point p satisfies
+//! p - x = t·x/r²: the difference is along the normal. So x = r²·p/(r² + t), component by
+//! component, and t is the root above -r_min² of
 //!
 //! ```text
 //! F(t) = Σ (r·p / (r² + t))² - 1
 //! ```
 //!
-//! F falls and bends upwards there, so Newton's steps from below never pass the root; the largest t
-//! at which one term alone is 1 lies below it. The distance is |t|·|x/r²|, outside where t > 0. With
-//! r divided by r_min and s = t + 1 as the unknown nothing cancels, neither near the centre nor for
-//! a point close to the plane across the shortest axis. If p lies in that plane and so near to the
-//! centre that no root exists, x leaves the plane at t = -r_min² as far as the ellipsoid allows.
+//! F is decreasing and convex there, so Newton steps from below the root never pass it; the largest
+//! t at which one term alone is 1 is a starting point below it. The distance is |t|·|x/r²|, outside
+//! if t > 0. With lengths divided by r_min and s = t + 1 as the unknown nothing cancels, neither
+//! near the centre nor for a point close to the plane perpendicular to the shortest axis. If p is
+//! in that plane and so near to the centre that there is no root, t = -r_min² and the component of
+//! x along the shortest axis follows from the equation of the ellipsoid.
 
 use condyle_math::Vec3;
 
@@ -20,15 +22,16 @@ use condyle_math::Vec3;
 pub(super) struct Distance {
     /// In metres, positive outside.
     pub(super) signed: f64,
-    /// The direction in which it grows: the outward normal at the nearest point, of length 1.
+    /// Its gradient: the outward normal at the nearest point, of length 1.
     pub(super) normal: Vec3,
 }
 
 /// The distance of a point from the ellipsoid about the origin with these half axes.
 ///
-/// A point that is not finite is infinitely far away.
+/// Infinite for a point that is not finite, or beyond about 1e150 times the shortest half axis.
 pub(super) fn distance(point: Vec3, radii: Vec3) -> Distance {
     let shortest = radii.x.min(radii.y).min(radii.z);
+    // Lengths relative to r_min; by symmetry p is moved to the first octant.
     let size = 1.0 / shortest;
     let r = radii.to_array().map(|r| r * size);
     let p = point.to_array().map(|p| p.abs() * size);
@@ -37,7 +40,8 @@ pub(super) fn distance(point: Vec3, radii: Vec3) -> Distance {
     if sum.is_nan() || sum > 1e150 {
         return far;
     }
-    // r² - r_min², and r·p
+    // r² - 1, factored so that it is accurate near 1, and r·p. The term i of F is (rp/(s + above))²
+    // and equals 1 at s = rp - above.
     let above = r.map(|r| (r - 1.0) * (r + 1.0));
     let rp = [r[0] * p[0], r[1] * p[1], r[2] * p[2]];
     let mut s: f64 = 0.0;
@@ -46,10 +50,11 @@ pub(super) fn distance(point: Vec3, radii: Vec3) -> Distance {
     }
     let quotient = |s: f64, i: usize| if rp[i] > 0.0 { rp[i] / (s + above[i]) } else { 0.0 };
     let excess = |s: f64| (0..3).map(|i| quotient(s, i).powi(2)).sum::<f64>() - 1.0;
-    // x/r, and x - p for the case where the shortest axis is left out.
+    // x/r, component by component.
     let mut ratio;
     if s > 0.0 || excess(0.0) > 0.0 {
         for _ in 0..100 {
+            // F(s) and -F′(s), both from the same quotients.
             let (mut value, mut slope) = (-1.0, 0.0);
             for i in 0..3 {
                 let q = quotient(s, i);
@@ -57,7 +62,8 @@ pub(super) fn distance(point: Vec3, radii: Vec3) -> Distance {
                 slope += 2.0 * q * q / (s + above[i]).max(f64::MIN_POSITIVE);
             }
             let next = s + value / slope;
-            // Rounding ends the climb; a slope of 0 is not met, as one term is 1.
+            // The sequence increases until rounding stops it. At the start one term is 1, so the
+            // slope is not 0.
             if next.is_nan() || next <= s * (1.0 + 1e-15) {
                 break;
             }
@@ -65,6 +71,8 @@ pub(super) fn distance(point: Vec3, radii: Vec3) -> Distance {
         }
         ratio = [0, 1, 2].map(|i| quotient(s, i));
     } else {
+        // No root: t = -r_min². |x/r|² = 1 gives the component along the shortest axis, where p is
+        // 0; both signs are equally near.
         s = 0.0;
         ratio = [0, 1, 2].map(|i| quotient(0.0, i));
         let left = -excess(0.0);
@@ -72,7 +80,7 @@ pub(super) fn distance(point: Vec3, radii: Vec3) -> Distance {
             ratio[i] = left.max(0.0).sqrt();
         }
     }
-    // x/r²: the normal, as long as the distance is t times it.
+    // x/r² is normal to the surface, and the distance is |t| times its length.
     let slope = [0, 1, 2].map(|i| ratio[i] / r[i]);
     let length = slope.iter().map(|x| x * x).sum::<f64>().sqrt();
     let signed = (s - 1.0) * length * shortest;
@@ -87,7 +95,7 @@ pub(super) fn distance(point: Vec3, radii: Vec3) -> Distance {
 mod tests {
     use super::*;
 
-    /// The least distance over a grid of the ellipsoid that closes in on its best point.
+    /// The smallest distance over a grid on the ellipsoid that is refined around its best point.
     fn slow(p: Vec3, r: Vec3) -> f64 {
         let at = |u: f64, v: f64| {
             Vec3::new(r.x * u.cos() * v.cos(), r.y * u.sin() * v.cos(), r.z * v.sin())

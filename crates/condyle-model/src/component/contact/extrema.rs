@@ -1,16 +1,17 @@
-//! The roots of a [`Quartic`], enclosed between its extrema.
+//! The roots of a [`Quartic`], bracketed by its extrema.
 //!
-//! Slower than a pair of lines, and sure: about an angle where |f| is large f·(1 + t²)² is a quartic
-//! in t = tan θ/2 whose first coefficient is not small. The roots of its second derivative enclose
-//! those of its first, and these its own, so that no change of sign is passed over.
+//! Slower than `lines.rs`, but it finds every change of sign. With θ counted so that |f| is large
+//! at π, f·(1 + t²)² is a quartic polynomial in t = tan(θ/2) whose leading coefficient is not
+//! small. The roots of each derivative bracket those of the next lower one.
 
 use super::quartic::{Quartic, Turn, Turns};
 
 impl Quartic {
-    /// The roots by enclosing: sure, and slower.
+    /// All roots, by bracketing.
     #[cold]
     pub(super) fn by_extrema(&self) -> Turns {
-        // Five equal angles determine f, so that it cannot be small at all of these.
+        // f has five coefficients, so its values at five equally spaced angles determine it: it
+        // cannot be small at all eight angles.
         let mut far = (1.0, 0.0);
         for turn in EIGHTHS {
             if self.at(turn).abs() > self.at(far).abs() {
@@ -19,7 +20,8 @@ impl Quartic {
         }
         let back = (-far.0, -far.1);
         let g = self.turned(back);
-        // g·(1 + t²)² with t = tan θ/2; t is infinite at the far angle.
+        // g·(1 + t²)² from cos θ = (1 - t²)/(1 + t²) and sin θ = 2t/(1 + t²), constant term first.
+        // The leading coefficient is g(π) = f(far); t is infinite there.
         let quartic = [
             g.constant + g.cos + g.cos2,
             2.0 * g.sin + 4.0 * g.sin2,
@@ -28,6 +30,7 @@ impl Quartic {
             g.constant - g.cos + g.cos2,
         ];
         let mut turns = Turns::NONE;
+        // Back from t to cosine and sine, and from g to f.
         for &t in real_roots(quartic).iter().flatten() {
             let r = 1.0 / (1.0 + t * t);
             let (x, y) = ((1.0 - t * t) * r, 2.0 * t * r);
@@ -55,10 +58,13 @@ const EIGHTHS: [Turn; 8] = {
     [(1.0, 0.0), (R, R), (0.0, 1.0), (-R, R), (-1.0, 0.0), (-R, -R), (0.0, -1.0), (R, -R)]
 };
 
-/// The real roots of a polynomial of degree 4, lowest coefficient first, whose last is not small.
+/// The real roots of a polynomial of degree 4, constant term first, with a leading coefficient that
+/// is not small.
 fn real_roots(k: [f64; 5]) -> [Option<f64>; 4] {
+    // Cauchy's bound on the absolute value of the roots of k.
     let largest = k[..4].iter().fold(0.0, |most: f64, c| most.max(c.abs()));
     let bound = 1.0 + largest / k[4].abs();
+    // The derivatives of degree 3, 2 and 1, in the same storage.
     let third = [k[1], 2.0 * k[2], 3.0 * k[3], 4.0 * k[4], 0.0];
     let second = [2.0 * k[2], 6.0 * k[3], 12.0 * k[4], 0.0, 0.0];
     let first = [6.0 * k[3], 24.0 * k[4], 0.0, 0.0, 0.0];
@@ -69,7 +75,8 @@ fn real_roots(k: [f64; 5]) -> [Option<f64>; 4] {
     stops
 }
 
-/// One root between each two neighbouring stops where the polynomial changes sign.
+/// The roots of a polynomial between consecutive stops (the roots of its derivative) where it
+/// changes sign; between them it is monotonic, so that there is one root at most.
 fn between(k: &[f64; 5], stops: &[Option<f64>; 4], bound: f64) -> [Option<f64>; 4] {
     let value = |t: f64| (((k[4] * t + k[3]) * t + k[2]) * t + k[1]) * t + k[0];
     let mut found = [None; 4];
@@ -87,7 +94,8 @@ fn between(k: &[f64; 5], stops: &[Option<f64>; 4], bound: f64) -> [Option<f64>; 
     found
 }
 
-/// The root between two places with different signs: Newton's steps, halving where they lead out.
+/// The root between two arguments with different signs: Newton steps, with bisection where a step
+/// leaves the bracket.
 fn enclosed(k: &[f64; 5], (mut low, at_low): (f64, f64), mut high: f64) -> f64 {
     let rising = at_low < 0.0;
     let mut t = 0.5 * (low + high);

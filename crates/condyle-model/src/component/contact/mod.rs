@@ -1,29 +1,33 @@
-//! The scapula glides on the ribs (Shao & Ng-Thow-Hing 2003, sections 4.7 and 5.2).
+//! Gliding contact of the scapula with the rib cage (Shao & Ng-Thow-Hing 2003, sections 4.7 and
+//! 5.2).
 //!
-//! The ribs of one side, with the muscle and fat on them, are an ellipsoid; two points P₁ and P₂ of
-//! the scapula, which hangs on the clavicle at its origin O, touch it. From the pose F that the
-//! joint itself gives, the scapula turns by θ about the fixed axis x₁ until P₁ is on the ellipsoid,
-//! and then by ψ about x₂ = P₁/|P₁|, which leaves P₁ where it is, until P₂ is on it as well:
+//! The ribs of one side, with the muscle and fat on them, are modelled by an ellipsoid. Two points
+//! P₁ and P₂ of the scapula, whose joint with the clavicle is at its origin O, are in contact with
+//! it. Starting from the pose F given by the joint, the scapula is rotated by θ about the fixed
+//! axis x₁ until P₁ is on the ellipsoid, and then by ψ about x₂ = P₁/|P₁|, which does not move P₁,
+//! until P₂ is on it as well:
 //!
 //! ```text
 //! R = R(x₁, θ)·R(x₂, ψ),   scapula_in_ellipsoid = F·R
 //! ```
 //!
-//! P₁ and P₂ are blended from up to four pairs, so that the place of contact wanders over the scapula
-//! with up to two drivers, say the lift of the shoulder and the rotation of the scapula (`pairs.rs`).
+//! P₁ and P₂ are interpolated between up to four pairs of points, so that the contact moves over
+//! the scapula with up to two drivers, for example the elevation of the shoulder and the rotation
+//! of the scapula (`pairs.rs`).
 //!
-//! A point that turns meets an ellipsoid at 0, 2 or 4 angles (`quartic.rs`). The one nearest to rest
-//! (angle 0) is taken; the source's binary search takes one it does not name. Where there is none,
-//! the angle is that of closest approach: the extremum of f(θ) = |p(θ)/radii|² - 1 that is nearest
-//! to 0, and the distance that is left over is told as a gap (`closest.rs`). As two roots merge they
-//! merge into that extremum, so the angle is continuous there.
+//! A point that rotates about an axis meets an ellipsoid at 0, 2 or 4 angles (`quartic.rs`). The
+//! one nearest to rest (angle 0) is used; the paper does not specify which one its binary search
+//! finds. If there is none, the angle of closest approach is used, the extremum of f(θ) =
+//! |p(θ)/radii|² - 1 with the smallest |f|, and the remaining distance is reported as a gap
+//! (`closest.rs`). Two roots that merge do so at that extremum, so the angle is continuous there.
 //!
-//! Derivatives come from one Newton step in the caller's number, θ - f(θ)/f′(θ), which changes the
-//! value by rounding only (implicit functions); where there is no contact, θ - f′(θ)/f″(θ). Kinks: as
-//! the point begins or ceases to touch, the angle goes like the square root of what is missing, so
-//! its slope grows without bound; it is cut off where |f′| is below 10⁻⁶ of the largest harmonic.
-//! Jumps: where the chosen pair of roots vanishes while another remains, and where two choices are
-//! equally near; [`Glide::next`] tells how close that is.
+//! Derivatives follow from the implicit function theorem: one Newton step θ - f(θ)/f′(θ) in the
+//! caller's number type changes the value only by rounding, and has the derivatives of the root.
+//! Without contact the step is θ - f′(θ)/f″(θ). Kinks: where contact begins or ends, the angle
+//! varies like a square root, so its derivative is unbounded; it is limited by using at least 10⁻⁶
+//! of the largest harmonic for |f′|. Discontinuities: where the selected pair of roots vanishes
+//! while another remains, and where two roots are equally near; [`Glide::next`] is the distance
+//! from the latter.
 
 mod closest;
 mod extrema;
@@ -40,18 +44,18 @@ use condyle_math::{Affine, Mat3, Scalar, Vec3};
 use pairs::Places;
 use quartic::{Quartic, Turn};
 
-/// A segment that glides on an ellipsoid carried by another, as the scapula does on the thorax.
+/// A segment that glides on an ellipsoid fixed in another segment, like the scapula on the thorax.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contact {
     /// The segment that glides: the scapula.
     pub segment: SegmentId,
-    /// The segment that carries the ellipsoid: the thorax, or a bone that moves with it.
+    /// The segment in which the ellipsoid is fixed: the thorax, or a bone that moves with it.
     pub surface: SegmentId,
     /// The transform of the segment's own joint, applied before the two rotations.
     pub before: Option<Source>,
-    /// What moves the contact from pair to pair: at most two.
+    /// The scalars that interpolate between the pairs: at most two.
     pub drivers: Vec<Source>,
-    /// Ellipsoid, axis and pairs.
+    /// Ellipsoid, axis and pairs of points.
     pub law: Gliding,
 }
 
@@ -66,22 +70,23 @@ pub struct Gliding {
     places: Places,
 }
 
-/// What [`Gliding::glide`] answers.
+/// The result of [`Gliding::glide`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Glide<S = f64> {
     /// The rotation R = R(x₁, θ)·R(x₂, ψ) to apply after the segment's pose.
     pub rotation: Mat3<S>,
     /// θ and ψ in radians, each in [-π, π].
     pub angles: [S; 2],
-    /// How far the two points are from the ellipsoid, in metres and positive outside: 0 in contact,
-    /// infinite where the pose is not a finite one.
+    /// The signed distances of the two points from the ellipsoid in metres, positive outside: 0 in
+    /// contact, infinite if the pose is not finite.
     pub gaps: [S; 2],
-    /// By how much the second-nearest angle of contact lies farther from rest than the one taken, in
-    /// radians and for the closer call of the two rotations; infinite where neither touches.
+    /// By how many radians the second-nearest angle of contact is farther from rest than the one
+    /// used: the smaller value of the two rotations, infinite if neither point is in contact. At 0
+    /// the choice is ambiguous.
     pub next: f64,
 }
 
-/// What nothing can glide with.
+/// Why arguments do not make a [`Gliding`] contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ContactError {
@@ -95,9 +100,10 @@ pub enum ContactError {
     NoPairs,
     /// There are more pairs than [`Gliding::MOST_PAIRS`]: this many.
     TooManyPairs(usize),
-    /// Two pairs (positions from 0) touch at the same values of the drivers.
+    /// Two pairs (positions from 0) have the same values of the drivers.
     EqualPlaces(usize, usize),
-    /// The first point of a pair (position from 0) is the segment's origin, about which it turns.
+    /// The first point of a pair (position from 0) is at the segment's origin, the centre of
+    /// rotation.
     FirstOnOrigin(usize),
 }
 
@@ -132,18 +138,19 @@ impl std::fmt::Display for ContactError {
 impl std::error::Error for ContactError {}
 
 impl Gliding {
-    /// The most pairs of points.
+    /// The largest number of pairs of points.
     pub const MOST_PAIRS: usize = 4;
 
     /// A gliding contact.
     ///
-    /// `ellipsoid_in_surface` is the rigid pose of the ellipsoid's centre and axes in the segment
-    /// that carries it, `radii` are its half axes in metres, `axis` is x₁ in the gliding segment's
-    /// frame, of any length.
+    /// `ellipsoid_in_surface` is the rigid transform of the ellipsoid's frame in the segment in
+    /// which it is fixed, `radii` are its half axes in metres, and `axis` is x₁ in the frame of the
+    /// gliding segment, of any length except zero.
     ///
     /// # Errors
     /// [`ContactError`] for numbers that are not finite, radii that are not positive, an axis of
-    /// length 0, no pair or too many, two pairs at one place, a first point at the origin.
+    /// length 0, no pairs or too many, two pairs with the same driver values, or a first point at
+    /// the origin.
     pub fn new(
         ellipsoid_in_surface: Affine,
         radii: Vec3,
@@ -185,9 +192,10 @@ impl Gliding {
         Ok(Self { ellipsoid_in_surface, radii, per_radius, axis, pairs, places })
     }
 
-    /// The same contact with its axis and its points as a frame in the gliding segment has them.
+    /// The same contact with its axis and points expressed in the joint frame of the gliding
+    /// segment.
     ///
-    /// They are given in the segment's own frame, but it turns in that of its joint.
+    /// They are given in the frame of the segment, but the rotations are about the joint.
     pub(crate) fn seen_from(&self, joint_in_segment: Affine) -> Self {
         let back = joint_in_segment.rigid_inverse();
         let mut seen = self.clone();
@@ -198,7 +206,7 @@ impl Gliding {
         seen
     }
 
-    /// The pose of the ellipsoid in the segment that carries it.
+    /// The transform of the ellipsoid in the segment in which it is fixed.
     pub fn ellipsoid_in_surface(&self) -> Affine {
         self.ellipsoid_in_surface
     }
@@ -218,9 +226,10 @@ impl Gliding {
         &self.pairs
     }
 
-    /// The two points that touch at these values of the drivers, in the gliding segment's frame.
+    /// The two points of contact for these values of the drivers, in the frame of the gliding
+    /// segment.
     ///
-    /// Drivers that are absent count as 0, those beyond the second not at all.
+    /// Missing drivers count as 0; those beyond the second are ignored.
     #[inline]
     pub fn points<S: Scalar>(&self, drivers: &[S]) -> [Vec3<S>; 2] {
         if let [pair] = &self.pairs[..] {
@@ -237,14 +246,14 @@ impl Gliding {
 
     /// The two rotations that bring the points to the ellipsoid.
     ///
-    /// `scapula_in_ellipsoid` is the rigid pose F of the gliding segment before them, its origin the
-    /// joint about which it turns. Any numbers are answered; a pose that is not finite, with no
-    /// rotation and infinite gaps. Where blending has brought the first point to the joint, there is
-    /// no second axis and ψ is 0.
+    /// `scapula_in_ellipsoid` is the rigid transform F of the gliding segment before the rotations;
+    /// its origin is the centre of rotation. For a pose that is not finite there is no rotation and
+    /// the gaps are infinite. If interpolation moves the first point to the origin, there is no
+    /// second axis and ψ is 0.
     #[inline]
     pub fn glide<S: Scalar>(&self, scapula_in_ellipsoid: Affine<S>, drivers: &[S]) -> Glide<S> {
         let [first, second] = self.points(drivers);
-        // The scapula as seen where the ellipsoid is the sphere of radius 1.
+        // F in the space in which the ellipsoid is the unit sphere: rows divided by the half axes.
         let per_radius = self.per_radius.cast();
         let pose = scapula_in_ellipsoid.linear;
         let scaled = Affine::new(
@@ -259,6 +268,7 @@ impl Gliding {
         let theta = self.turn(scaled, axis, first);
         let about_first = Mat3::rotation_about(axis, (theta.sin, theta.cos));
         let turned = Affine::new(scaled.linear * about_first, scaled.translation);
+        // The second rotation is about the line from the joint to the first point.
         let square = first.norm_squared();
         if square.value() < LEAST_ARM * LEAST_ARM {
             let gap = self.gap(turned * second);
@@ -279,9 +289,10 @@ impl Gliding {
         }
     }
 
-    /// The turn about an axis through the origin that brings a point to the sphere.
+    /// The rotation about an axis through the origin that brings a point to the unit sphere.
     #[inline(always)]
     fn turn<S: Scalar>(&self, scaled: Affine<S>, axis: Vec3<S>, point: Vec3<S>) -> Settled<S> {
+        // The point moves on the circle centre + u·cos θ + w·sin θ, an ellipse in the scaled space.
         let along = axis * axis.dot(point);
         let centre = scaled * along;
         let u = scaled.linear * (point - along);
@@ -294,9 +305,10 @@ impl Gliding {
         settled
     }
 
-    /// The distance of a point, given where the ellipsoid is a sphere, from the ellipsoid.
+    /// The signed distance from the ellipsoid, in metres, of a point given in the space in which
+    /// the ellipsoid is the unit sphere.
     ///
-    /// Its slope is the outward normal.
+    /// Its gradient is the outward normal.
     #[cold]
     fn gap<S: Scalar>(&self, scaled: Vec3<S>) -> S {
         let point = scaled.times(self.radii.cast());
@@ -305,14 +317,15 @@ impl Gliding {
         if !distance.signed.is_finite() {
             return S::from_f64(f64::INFINITY);
         }
+        // `point - value` has the value 0: the product contributes the derivatives only.
         S::from_f64(distance.signed) + (point - value.cast()).dot(distance.normal.cast())
     }
 }
 
-/// Closer to the joint than this, in metres, a point has no direction to turn about.
+/// The distance from the joint, in metres, below which a point defines no axis.
 const LEAST_ARM: f64 = 1e-9;
 
-/// The part of the largest harmonic below which a slope counts as this much.
+/// The smallest |f′| or |f″| that is divided by, as a fraction of the largest harmonic.
 const LEAST_SLOPE: f64 = 1e-6;
 
 /// One of the two rotations.
@@ -324,21 +337,22 @@ struct Settled<S> {
     next: Turn,
 }
 
-/// The turn by which an angle's distance from rest exceeds another's.
+/// |θ₂| - |θ₁| of two angles, as cosine and sine, by the addition theorems.
 #[inline(always)]
 fn farther((c1, s1): Turn, (c2, s2): Turn) -> Turn {
     let (s1, s2) = (s1.abs(), s2.abs());
     (c1 * c2 + s1 * s2, s2 * c1 - c2 * s1)
 }
 
-/// In place of that where there is no second angle: a cosine below all others.
+/// Its value if there is no second angle: a cosine below all others.
 const NO_NEXT: Turn = (-2.0, 0.0);
 
 fn radians_of(next: Turn) -> f64 {
     if next.0 < -1.5 { f64::INFINITY } else { next.1.atan2(next.0) }
 }
 
-/// The angle nearest to rest where f is 0, or else where it comes nearest to 0; and which it is.
+/// The root of f nearest to rest, or without roots the extremum of f nearest to 0; and whether it
+/// is a root.
 #[inline]
 fn settle<S: Scalar>(quartic: &Quartic<S>) -> (Settled<S>, bool) {
     let value = quartic.value();
@@ -350,6 +364,7 @@ fn settle<S: Scalar>(quartic: &Quartic<S>) -> (Settled<S>, bool) {
     let roots = value.roots();
     let mut next = NO_NEXT;
     let (turn, miss, slope) = if roots.as_slice().is_empty() {
+        // The extremum is a root of f′: the same Newton step with f′ and f″.
         let turn = value.nearest_extremum();
         let slope = quartic.slope();
         (turn, slope.at(turn), value.slope().slope().at(turn))
@@ -363,7 +378,8 @@ fn settle<S: Scalar>(quartic: &Quartic<S>) -> (Settled<S>, bool) {
                 second = root;
             }
         }
-        // By how much the second is farther; cosines alone cannot tell close ones apart.
+        // Near 0 cosines of different angles are equal to rounding: the sine of the difference
+        // decides which of the two is nearer.
         next = farther(near, second);
         if next.1 < 0.0 {
             (near, next) = (second, (next.0, -next.1));
@@ -372,7 +388,8 @@ fn settle<S: Scalar>(quartic: &Quartic<S>) -> (Settled<S>, bool) {
     };
     let least = LEAST_SLOPE * value.scale();
     let slope = if slope.abs() < least { least.copysign(slope) } else { slope };
-    // The step is rounding and slope only, so that a parabola turns it exactly.
+    // The value of the step is of the order of rounding; it carries the derivatives. The rotation
+    // by it, to second order, is exact to rounding, and needs no sine.
     let step = miss.scale(-1.0 / slope);
     let half = step * step.scale(0.5);
     let (c, s) = (S::from_f64(turn.0), S::from_f64(turn.1));

@@ -1,44 +1,46 @@
-//! Which pair of points touches: several pairs blended by where two drivers are.
+//! Interpolation between pairs of contact points by two drivers.
 //!
-//! A driver x is normalised over the range [lo, hi] that the pairs' places span, by
-//! n(x) = u²·(3 - 2u) with u = (x - lo)/(hi - lo) held to 0..1, so that it levels off smoothly at
-//! the outermost pairs; a driver in which the pairs do not differ counts nothing. With d_k the
-//! distance to the normalised place of pair k, the weights are
+//! A driver x is normalised over the range [lo, hi] of its values at the pairs, by n(x) = u²·(3 -
+//! 2u) with u = (x - lo)/(hi - lo) clamped to [0, 1], so that it is constant beyond the outermost
+//! pairs with a continuous slope; a driver with the same value at all pairs is ignored. With d_k
+//! the distance to the normalised driver values of pair k, the weights are
 //!
 //! ```text
 //! w_k = Π_{j≠k} d_j² / Σ_i Π_{j≠i} d_j²
 //! ```
 //!
-//! which is inverse-square weighting without its division by zero (Shepard 1968). They are not
-//! negative and add up to 1, so that the blended points stay within the hull of the given ones; at
-//! the place of a pair its weight is 1 and the slope of every weight is 0; the slope is continuous
-//! everywhere. The source says only that pairs are interpolated over two degrees of freedom.
+//! which is inverse-distance weighting with exponent 2 (Shepard 1968), written without division by
+//! zero. The weights are not negative and add up to 1, so the interpolated points stay in the
+//! convex hull of the given ones. At the driver values of a pair its weight is 1 and the gradient
+//! of every weight is 0; the gradient is continuous everywhere. The paper only states that pairs
+//! are interpolated over two degrees of freedom.
 
 use condyle_math::{Scalar, Vec3};
 
-/// Two points of the scapula that touch the ribs together, and when.
+/// Two points of the scapula that are in contact with the ribs together, and the driver values at
+/// which they are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPair {
     /// The first point in the segment's frame, in metres: the first rotation brings it to the ribs.
     pub first: Vec3,
     /// The second point in the segment's frame, in metres.
     pub second: Vec3,
-    /// The values of the two drivers at which this pair touches; unused ones are 0.
+    /// The values of the two drivers at which this pair is used alone; 0 for an absent driver.
     pub at: [f64; 2],
 }
 
-/// The ranges of the drivers and where in them the pairs are.
+/// The ranges of the drivers, and the normalised driver values of the pairs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Places {
     low: [f64; 2],
-    /// 1/(hi - lo), or 0 where the pairs do not differ.
+    /// 1/(hi - lo), or 0 if all pairs have the same value.
     per_span: [f64; 2],
     at: [[f64; 2]; super::Gliding::MOST_PAIRS],
     count: usize,
 }
 
 impl Places {
-    /// The places of at most [`super::Gliding::MOST_PAIRS`] pairs; of more, the first ones.
+    /// The normalised driver values of the first [`super::Gliding::MOST_PAIRS`] pairs.
     pub(super) fn new(pairs: &[ContactPair]) -> Self {
         let mut places = Self { low: [0.0; 2], per_span: [0.0; 2], at: [[0.0; 2]; 4], count: 0 };
         for axis in 0..2 {
@@ -56,7 +58,7 @@ impl Places {
         places
     }
 
-    /// Two pairs (positions from 0) that lie at one place, if there are.
+    /// Two pairs (positions from 0) with the same driver values, if any.
     pub(super) fn equal(&self, pairs: &[ContactPair]) -> Option<(usize, usize)> {
         let near = |a: &ContactPair, b: &ContactPair| {
             (0..2).all(|k| (a.at[k] - b.at[k]).abs() * self.per_span[k] < 1e-6)
@@ -101,12 +103,14 @@ impl Places {
             weights[k] = weight;
             sum += weight;
         }
+        // Not 0: the pairs differ in their driver values, so at most one squared distance is 0, and
+        // the product without it is positive.
         let scale = S::one() / sum;
         weights.map(|weight| weight * scale)
     }
 }
 
-/// u²·(3 - 2u) held to 0..1, and its slope; 0 for what is no number.
+/// u²·(3 - 2u) for u clamped to [0, 1], and its slope; 0 for NaN.
 #[inline(always)]
 fn smooth(u: f64) -> (f64, f64) {
     if u >= 1.0 {

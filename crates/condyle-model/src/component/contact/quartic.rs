@@ -1,4 +1,4 @@
-//! Where a point that turns about an axis meets an ellipsoid.
+//! The angles at which a point that rotates about an axis meets an ellipsoid.
 //!
 //! A point on a circle, c + u·cos θ + w·sin θ, divided by the half axes component by component,
 //! gives M + U·cos θ + W·sin θ, and it lies on the ellipsoid where
@@ -7,9 +7,10 @@
 //! f(θ) = |M + U·cos θ + W·sin θ|² - 1 = A + B·cos θ + C·sin θ + D·cos 2θ + E·sin 2θ = 0
 //! ```
 //!
-//! at 0, 2 or 4 angles. A pair of lines gives them where it is beyond doubt (`lines.rs`); everywhere
-//! else they are enclosed between the extrema of f (`extrema.rs`), so that every change of sign is
-//! found. A pair of roots can be missed only where f passes 0 by no more than its rounding error.
+//! at 0, 2 or 4 angles. Where they are well conditioned they are computed from a pair of lines
+//! (`lines.rs`); elsewhere they are bracketed by the extrema of f (`extrema.rs`), so that every
+//! change of sign is found. A pair of roots can be missed only where f exceeds 0 between them by no
+//! more than its rounding error.
 
 use condyle_math::{Scalar, Vec3};
 
@@ -51,9 +52,12 @@ impl Turns {
 }
 
 impl<S: Scalar> Quartic<S> {
-    /// f for the circle with this centre and these half axes, all divided by the ellipsoid's radii.
+    /// f for the circle with this centre and these half axes, all divided by the half axes of the
+    /// ellipsoid.
     #[inline(always)]
     pub(super) fn of_circle(centre: Vec3<S>, u: Vec3<S>, w: Vec3<S>) -> Self {
+        // |M + U·cos θ + W·sin θ|² with cos² = (1 + cos 2θ)/2, sin² = (1 - cos 2θ)/2 and
+        // sin·cos = (sin 2θ)/2.
         let (uu, ww) = (u.norm_squared(), w.norm_squared());
         Self {
             constant: centre.norm_squared() - S::one() + (uu + ww).scale(0.5),
@@ -76,7 +80,7 @@ impl<S: Scalar> Quartic<S> {
         }
     }
 
-    /// f′, which is of the same form.
+    /// f′, which has the same form.
     #[inline(always)]
     pub(super) fn slope(&self) -> Self {
         Self {
@@ -97,26 +101,26 @@ impl<S: Scalar> Quartic<S> {
 }
 
 impl Quartic {
-    /// The largest coefficient of a harmonic: the measure of what is small.
+    /// The largest absolute coefficient of a harmonic: the scale for tolerances.
     #[inline(always)]
     pub(super) fn scale(&self) -> f64 {
         self.cos.abs().max(self.sin.abs()).max(self.cos2.abs().max(self.sin2.abs()))
     }
 
-    /// Whether f does not depend on the angle: the point lies on its axis.
+    /// Whether f does not depend on the angle, to rounding: the point is on the axis.
     #[inline(always)]
     pub(super) fn is_constant(&self) -> bool {
         self.scale() <= 1e-15 * self.constant.abs() + f64::MIN_POSITIVE
     }
 
-    /// Whether every coefficient is a number that can still be squared.
+    /// Whether every coefficient is finite and small enough to be squared without overflow.
     #[inline(always)]
     pub(super) fn is_sound(&self) -> bool {
         let first = self.cos.abs() + self.sin.abs();
         self.constant.abs() + first + self.cos2.abs() + self.sin2.abs() < 1e100
     }
 
-    /// All roots: none, two or four, in no order; none for a constant.
+    /// All roots: none, two or four, unordered; none if f is constant.
     #[inline]
     pub(super) fn roots(&self) -> Turns {
         if self.is_constant() {
@@ -125,14 +129,14 @@ impl Quartic {
         self.by_lines().unwrap_or_else(|| self.by_extrema())
     }
 
-    /// The angle where |f| is least among its extrema.
+    /// The extremum of f with the smallest |f|.
     pub(super) fn nearest_extremum(&self) -> Turn {
         let slope = self.slope();
         let mut best = (1.0, 0.0);
         let mut least = f64::INFINITY;
         for &turn in slope.roots().as_slice() {
             let value = self.at(turn).abs();
-            // Of two that are equal, the one nearer to rest.
+            // If two are equal to rounding, the one nearer to rest.
             let margin = 1e-13 * self.scale();
             if value < least - margin || (value < least + margin && turn.0 > best.0) {
                 (best, least) = (turn, value);
@@ -148,7 +152,7 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    /// Numbers in [-1, 1) from a linear congruence.
+    /// Numbers in [-1, 1) from a linear congruential generator.
     struct Random(u64);
 
     impl Random {
@@ -171,8 +175,8 @@ mod tests {
     }
 
     impl Circle {
-        /// Four kinds by turns: anywhere; the joint near the surface; near the centre, where four
-        /// roots are likely; and one whose f misses 0, or passes it, by as little as 10⁻¹¹.
+        /// Four kinds in turn: anywhere; the joint near the surface; near the centre, where four
+        /// roots are likely; and an extremum of f with a value as small as ±10⁻¹¹.
         fn random(random: &mut Random, kind: usize) -> Self {
             let mut radii = Vec3::from([0; 3].map(|_| 0.125 + 0.075 * random.next()));
             let joint = match kind {
@@ -203,7 +207,7 @@ mod tests {
             Quartic::of_circle(self.centre.times(per), self.u.times(per), self.w.times(per))
         }
 
-        /// f as the source states it, without the polynomial.
+        /// f by its definition, without the polynomial.
         fn at(&self, (c, s): Turn) -> f64 {
             let p = self.centre + self.u * c + self.w * s;
             let squares = [p.x / self.radii.x, p.y / self.radii.y, p.z / self.radii.z];
@@ -211,9 +215,11 @@ mod tests {
         }
     }
 
-    /// All changes of sign of `f` over a dense scan, halved to the end, and its extremum nearest 0.
+    /// All changes of sign of `f` over a dense scan, refined by bisection, and its extremum nearest
+    /// 0.
     ///
-    /// Where the scan has a least |f| between equal signs, a golden search looks for more.
+    /// Where the scan has a minimum of |f| between equal signs, a golden-section search looks for
+    /// more roots.
     fn scan(f: impl Fn(f64) -> f64, values: &[f64]) -> (Vec<f64>, f64, f64) {
         let n = values.len();
         let step = TAU / n as f64;
@@ -289,7 +295,7 @@ mod tests {
             }
             for &x in &expected {
                 let off = found.iter().map(|&root| apart(root, x)).fold(9.0, f64::min);
-                // Halving stops where f drowns in the rounding of its terms.
+                // Bisection stops where f is below the rounding error of its terms.
                 let slope = quartic.slope().at((x.cos(), x.sin())).abs();
                 let rounding = 1e-15 * (10.0 + quartic.constant.abs() + quartic.scale());
                 assert!(off < 1e-15 + rounding / slope.max(1e-7), "{case} {off} {slope}");
@@ -298,7 +304,8 @@ mod tests {
                 let turn = quartic.nearest_extremum();
                 let value = circle.at(turn).abs();
                 assert!((value - least).abs() < 1e-13 * (1.0 + quartic.constant.abs()), "{case}");
-                // Golden search sees a minimum to the root of rounding only, and flat ones less.
+                // Golden-section search locates a minimum to the square root of rounding, flat ones
+                // less accurately.
                 let bend = quartic.slope().slope().at(turn).abs();
                 assert!(bend < 1e-3 || apart(turn, at_least) < 1e-5, "{case} {value} {least}");
             }

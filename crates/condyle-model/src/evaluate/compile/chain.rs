@@ -1,4 +1,4 @@
-//! Chains: the motions of segments, laid end to end.
+//! Compilation of chains: the steps of the motions of segments, concatenated.
 
 use super::super::instruction::{AnyLaw, ContactCall, Instruction, LawCall, NO_BASE, Step};
 use super::{Compiler, Scalar};
@@ -6,7 +6,7 @@ use crate::component::{Compensate, Component, Contact, Source, shear};
 use crate::model::{ComponentId, SegmentId};
 use condyle_math::{Affine, Mat3, Vec3};
 
-/// Makes one step of three slides along x, y and z.
+/// Merges three translations along x, y and z at the end of a list into one step.
 fn merge_slides(steps: &mut Vec<Step>) {
     let Some(last) = steps.last_chunk::<3>() else { return };
     let slide = |step: Step, along: Vec3| match step {
@@ -21,8 +21,8 @@ fn merge_slides(steps: &mut Vec<Step>) {
 }
 
 impl Compiler<'_> {
-    /// The rotations from the topmost compensated ancestor's parent to the segment's: as they are,
-    /// and with what is compensated taken away.
+    /// The registers of the rotations A and A′ of [`Compensate`]: of the path from the parent of
+    /// the topmost named ancestor to the parent of the segment, without and with compensation.
     pub(super) fn paths(&mut self, compensate: &Compensate) -> (u32, u32) {
         let path = self.model.compensated_path(compensate);
         let mut registers = [0; 2];
@@ -34,6 +34,8 @@ impl Compiler<'_> {
                 if let Some(Source::Output(motion, _)) = segment.motion
                     && let Some(of) = self.shared[motion.index()]
                 {
+                    // The first path has exponent 1 everywhere, the second 1 - w for named
+                    // ancestors.
                     let named = compensate.ancestors.contains(&id);
                     let exponent = if named { 1.0 - take } else { 1.0 };
                     if exponent != 0.0 {
@@ -49,10 +51,12 @@ impl Compiler<'_> {
         (registers[0], registers[1])
     }
 
-    /// The turns that put a bone on its ellipsoid.
+    /// Compiles a contact: the chain from the ellipsoid to the joint frame of the segment, and the
+    /// instruction that computes the rotations from it. Returns the register of the rotations.
     pub(super) fn contact(&mut self, component: ComponentId, contact: &Contact) -> u32 {
         let mut steps = vec![];
         self.fixed(contact.law.ellipsoid_in_surface().rigid_inverse(), &mut steps);
+        // The own motion of the gliding segment is the contact; before it comes `before`, if any.
         for id in self.model.path_between(contact.surface, contact.segment) {
             let segment = self.model.segment(id);
             self.fixed(segment.joint_in_parent, &mut steps);
@@ -74,6 +78,7 @@ impl Compiler<'_> {
         });
         let drivers = drivers.collect();
         let output = self.new_transform();
+        // Two angles and two gaps.
         let report = self.program.code.scalars as u32;
         self.program.code.scalars += 4;
         let joint = self.model.segment(contact.segment).joint_in_segment;
@@ -90,12 +95,14 @@ impl Compiler<'_> {
         self.program.code.transforms as u32 - 1
     }
 
-    /// Lays the steps of a transform component end to end; products are opened without recursion.
+    /// Appends the steps of a transform component. Products are expanded with an explicit stack, so
+    /// the depth of nesting does not matter.
     pub(super) fn append(&mut self, id: ComponentId, steps: &mut Vec<Step>) {
         let mut stack = vec![Source::Output(id, 0)];
         let mut at_root = true;
         while let Some(source) = stack.pop() {
             let Source::Output(id, _) = source else { continue };
+            // The root itself may be the shared component that is being compiled.
             if let Some(register) = self.shared[id.index()]
                 && !at_root
             {
@@ -133,7 +140,7 @@ impl Compiler<'_> {
                 Component::Pivot(law) => {
                     let angle = self.scalar(law.angle);
                     if let (Some(centre), Scalar::Register(angle)) = (law.fixed_centre(), angle) {
-                        // One centre: a plain turn between two shifts.
+                        // One centre: a rotation between two shifts, cheaper than the law.
                         self.fixed(Affine::from_translation(centre), steps);
                         let turn = self.turn(law.axis(), angle);
                         steps.push(turn);
@@ -177,6 +184,7 @@ impl Compiler<'_> {
                     self.law(AnyLaw::Custom(law.clone()), &law.inputs, steps);
                 }
                 Component::Compensate(compensate) => {
+                    // F⁻¹·A⁻¹·A′·F, with F the joint frame in the parent.
                     let Some((is, should)) = self.compensations[id.index()] else { continue };
                     let joint = self.model.segment(compensate.segment).joint_in_parent.linear;
                     self.fixed(Affine::from_rotation(joint.transpose()), steps);
@@ -208,7 +216,7 @@ impl Compiler<'_> {
         steps.push(Step::Law(self.program.code.laws.len() as u32 - 1));
     }
 
-    /// Appends a fixed transform, merged with a fixed one before it and dropped if it is nothing.
+    /// Appends a fixed transform, merged with a preceding fixed one; the identity is dropped.
     pub(super) fn fixed(&mut self, transform: Affine, steps: &mut Vec<Step>) {
         let before = match steps.last() {
             Some(Step::Fixed(index)) => Some(self.program.code.fixed[*index as usize]),
@@ -244,6 +252,7 @@ impl Compiler<'_> {
     }
 
     pub(super) fn chain(&mut self, base: u32, steps: Vec<Step>, output: u32) {
+        // A leading shift becomes part of the instruction.
         let instruction = match steps[..] {
             [Step::Ball(orientation)] if base != NO_BASE => {
                 Instruction::BallAt { base, shift: Vec3::ZERO, orientation, output }
@@ -265,7 +274,8 @@ impl Compiler<'_> {
         self.program.code.instructions.push(instruction);
     }
 
-    /// The step that turns about an axis of length 1; turns by one angle share its sine and cosine.
+    /// The step that rotates about an axis of length 1; rotations by the same angle share its sine
+    /// and cosine.
     fn turn(&mut self, axis: Vec3, angle: u32) -> Step {
         let turns = &mut self.program.code.turns;
         let turn = turns.iter().position(|&known| known == angle).unwrap_or_else(|| {

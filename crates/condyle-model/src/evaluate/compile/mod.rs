@@ -1,4 +1,4 @@
-//! From a checked model to its program.
+//! Compilation of a checked model to a program.
 
 mod chain;
 mod scalar;
@@ -10,7 +10,7 @@ use crate::component::{Component, Source, Swinging};
 use crate::model::{ComponentId, CoordinateId, CoordinateKind, Model, Node, dependency_order};
 use std::collections::HashMap;
 
-/// What stands for a source while a program is laid out.
+/// The compiled form of a source: a constant or a register.
 #[derive(Clone, Copy, Debug)]
 enum Scalar {
     Constant(f64),
@@ -20,33 +20,33 @@ enum Scalar {
 struct Compiler<'m> {
     model: &'m Model,
     program: Program,
-    /// What each coordinate's effective value is (its first register, for an orientation).
+    /// The value of each coordinate as components read it (for an orientation its first register).
     coordinates: Vec<Scalar>,
-    /// What each output of each scalar component is.
+    /// The value of each output of each scalar component.
     outputs: Vec<Vec<Scalar>>,
-    /// The register of each transform component that several things read.
+    /// The register of each transform component with several readers.
     shared: Vec<Option<u32>>,
-    /// For each compensation the path as it is and as it should be.
+    /// For each compensation the registers of the path without and with compensation.
     compensations: Vec<Option<(u32, u32)>>,
-    /// For each contact the register of its turns.
+    /// For each contact the register of its rotations.
     contacts: Vec<Option<u32>>,
-    /// How many things read each transform component.
+    /// The number of readers of each component.
     readers: Vec<usize>,
     needed: Vec<bool>,
-    /// Outputs of limit components that are the effective value of a coordinate.
+    /// The outputs of limit components that are the effective value of a coordinate.
     effective: HashMap<Source, CoordinateId>,
 }
 
 impl Program {
-    /// Flattens a model. Models are checked when they are built, so this cannot fail.
+    /// Compiles a model. Models are checked when they are built, so this cannot fail.
     pub fn compile(model: &Model) -> Self {
         compile(model)
     }
 }
 
-/// Flattens a model.
+/// Compiles a model.
 fn compile(model: &Model) -> Program {
-    // A built model has no circle; an empty order for a wrong one would only pose nothing.
+    // A built model has no dependency cycle, so the default, an empty order, is never used.
     let order = dependency_order(model).unwrap_or_default();
     let components = model.components.len();
     let mut compiler = Compiler {
@@ -99,7 +99,7 @@ fn compile(model: &Model) -> Program {
     for segment in model.parents_first() {
         compiler.segment(segment);
     }
-    // Scalars are made of scalars alone, so all of them can come first.
+    // Scalar instructions read scalars only, so all of them can run first. The sort is stable.
     let code = &mut compiler.program.code;
     code.instructions.sort_by_key(|instruction| !instruction.makes_scalars());
     code.scalar_instructions = code.instructions.partition_point(Instruction::makes_scalars);
@@ -117,7 +117,8 @@ fn compile(model: &Model) -> Program {
 }
 
 impl Compiler<'_> {
-    /// Finds what segments and coupled coordinates read, directly or not; the rest is dropped.
+    /// Marks the components that segments and coordinates depend on, directly or not; the others
+    /// are not compiled.
     fn mark_needed(&mut self, order: &[Node]) {
         let roots = self.model.segments.iter().filter_map(|s| s.motion);
         let roots = roots.chain(self.model.coordinates.iter().filter_map(|c| c.follows));
@@ -127,6 +128,7 @@ impl Compiler<'_> {
                 self.readers[id.index()] += 1;
             }
         }
+        // Readers come after what they read: in reverse order one pass is enough.
         for node in order.iter().rev() {
             let Node::Component(id) = *node else { continue };
             if !self.needed[id.index()] {
@@ -141,11 +143,11 @@ impl Compiler<'_> {
         }
     }
 
-    /// Finds the coordinates that limit components hold. The limit farthest along the way from a
-    /// coordinate writes its effective value (of several as far, the last in the model); everything
-    /// that reads the coordinate itself gets what was asked for.
+    /// Finds the coordinates that limit components hold. If several limits act on a coordinate one
+    /// after another, the last one writes its effective value (of several at the same depth, the
+    /// last in the model). Whatever reads the coordinate itself gets the requested value.
     fn find_effective(&mut self, order: &[Node]) {
-        // For each output the coordinate that it holds, and how many limits lie between.
+        // For each output the coordinate that it holds, and the number of limits up to it.
         let mut origin: HashMap<Source, (CoordinateId, usize)> = HashMap::new();
         let mut last: HashMap<CoordinateId, (usize, ComponentId, Source)> = HashMap::new();
         for node in order {
@@ -163,6 +165,8 @@ impl Compiler<'_> {
                 _ => continue,
             };
             for (k, source) in held.into_iter().enumerate() {
+                // A limit on the output of another one acts on the same coordinate, one level
+                // deeper.
                 let found = match source {
                     Source::Coordinate(id) => Some((id, 0)),
                     output => origin.get(&output).copied(),
@@ -183,6 +187,8 @@ impl Compiler<'_> {
         for id in self.model.coordinate_ids() {
             let Some(&(.., output)) = last.get(&id) else { continue };
             self.effective.insert(output, id);
+            // New registers for the requested numbers; readers of the coordinate are redirected
+            // there.
             let own = self.model.stored_range(id);
             let asked = self.program.code.scalars as u32;
             self.program.code.scalars += own.len();
@@ -195,6 +201,7 @@ impl Compiler<'_> {
     fn limits(&mut self) {
         for id in self.model.coordinate_ids() {
             let coordinate = self.model.coordinate(id);
+            // Followers have limit rows instead, and orientations have cones.
             let (lower, upper) = coordinate.range.bounds();
             let bounded = lower > f64::NEG_INFINITY || upper < f64::INFINITY;
             if bounded

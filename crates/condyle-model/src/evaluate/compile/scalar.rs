@@ -1,4 +1,4 @@
-//! Scalar instructions: what components make of coordinates and of each other.
+//! Compilation of scalar components to scalar instructions.
 
 use super::super::instruction::{CombineCall, ConeCall, Instruction, NO_BASE, NO_BOUND};
 use super::{Compiler, Scalar};
@@ -17,7 +17,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// A register that holds a source, made for a constant.
+    /// The register of a scalar; a new one for a constant.
     pub(super) fn register(&mut self, scalar: Scalar) -> u32 {
         match scalar {
             Scalar::Register(register) => register,
@@ -38,8 +38,8 @@ impl Compiler<'_> {
         match node {
             Node::Coordinate(id) => {
                 let Some(leader) = self.model.coordinate(id).follows else { return };
-                // The effective value must stand in the coordinate's own register, for whoever
-                // reads the pose.
+                // The effective value must be in the coordinate's own register, where readers of
+                // the pose expect it.
                 let own = self.model.stored_range(id).start as u32;
                 match self.scalar(leader) {
                     Scalar::Constant(value) => {
@@ -74,6 +74,7 @@ impl Compiler<'_> {
                 let input = self.scalar(map.input);
                 for function in &map.functions {
                     let value = function.as_constant();
+                    // Constants are folded, and the identity needs no instruction.
                     let result = match (input, value, function.as_linear()) {
                         (_, Some(value), _) => Scalar::Constant(value),
                         (Scalar::Constant(x), ..) => {
@@ -109,6 +110,7 @@ impl Compiler<'_> {
                 if let Component::Contact(contact) = component {
                     self.contacts[id.index()] = Some(self.contact(id, contact));
                 }
+                // A transform with several readers is computed once, as a chain of its own.
                 if self.readers[id.index()] > 1 {
                     let register = self.new_transform();
                     let mut steps = vec![];
@@ -120,7 +122,8 @@ impl Compiler<'_> {
         }
     }
 
-    /// A passive scalar between bounds that a driver sets: the held value, and a row for each side.
+    /// Compiles a passive scalar between bounds that a driver sets: its effective value, and a
+    /// limit row for each bound.
     pub(super) fn depend(&mut self, id: ComponentId, depend: &Depend) -> Scalar {
         let passive = self.scalar(depend.passive);
         let passive = self.register(passive);
@@ -140,7 +143,8 @@ impl Compiler<'_> {
         Scalar::Register(output)
     }
 
-    /// The register of a limit's output: a coordinate's own, where this is its effective value.
+    /// The register of an output of a limit component: the coordinate's own if the output is its
+    /// effective value, otherwise a new one.
     fn limit_output(&mut self, output: Source) -> u32 {
         match self.effective.get(&output) {
             Some(&id) => self.model.stored_range(id).start as u32,
@@ -148,7 +152,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// A ball joint held inside a cone, and the rows that say how far inside it is.
+    /// Compiles a ball joint inside a cone: its effective numbers, and its limit rows.
     fn cone(&mut self, id: ComponentId, component: &JointCone) -> Vec<Scalar> {
         let (mut inputs, mut outputs) = (vec![], vec![]);
         match &component.of {
@@ -186,7 +190,7 @@ impl Compiler<'_> {
         results
     }
 
-    /// The row `sign · (value - bound) ≥ 0`.
+    /// Adds the limit row `sign · (value - bound) ≥ 0`.
     pub(super) fn row(&mut self, value: u32, bound: u32, sign: f64) {
         let function = FunctionOfSeveral::Linear { slopes: vec![sign, -sign], intercept: 0.0 };
         let inputs = [value, bound].map(Scalar::Register);
@@ -195,7 +199,7 @@ impl Compiler<'_> {
         self.program.code.rows.push(row);
     }
 
-    /// Rows for the ranges of coordinates that follow others.
+    /// Adds limit rows for the ranges of coordinates that follow others.
     pub(super) fn follower_rows(&mut self) {
         for id in self.model.coordinate_ids() {
             let coordinate = self.model.coordinate(id);
@@ -218,6 +222,7 @@ impl Compiler<'_> {
             .iter()
             .filter_map(|s| if let Scalar::Constant(v) = s { Some(*v) } else { None })
             .collect();
+        // All inputs are constant: folded.
         if constants.len() == inputs.len() {
             return Scalar::Constant(function.apply(&constants));
         }

@@ -1,32 +1,33 @@
-//! Eight edges side by side, so that the search for the nearest one runs without a branch an edge.
+//! Search for the nearest edge in blocks of eight edges, without a branch per edge (SIMD lanes).
 //!
-//! A block knows a ball around its points. By the triangle inequality, with chords between points
+//! A block has a bounding ball of its edges. By the triangle inequality, with chords between points
 //! of the unit sphere,
 //!
 //! ```text
 //! |v - x| ≥ |v - centre| - radius      for every x on the block's edges
 //! ```
 //!
-//! so a block is passed over where that is more than the chord to a corner already seen.
+//! so a block is skipped if that is more than the chord to the nearest corner found so far.
 
 use super::boundary::Edge;
 use condyle_math::Vec3;
 
-/// How many edges a block has.
+/// The number of edges of a block.
 const LANES: usize = 8;
-/// Up to this number of blocks all are measured.
+/// Up to this number of blocks, all are measured.
 const FEW: usize = 4;
-/// Room for the rounding of chords made from cosines: the root of that of a number near 2.
+/// A margin for the rounding of √(2 - 2·cos): the square root of the rounding of a number near 2.
 const ROOM: f64 = 1e-7;
 
-/// Eight edges in a row, the last ones repeated without an arc where fewer are left.
+/// Eight consecutive edges, as a structure of arrays; if fewer remain, the last one fills the other
+/// lanes, with a NaN cosine.
 #[derive(Clone, Debug)]
 struct Block {
-    /// The start of the first edge; the others start where the one before ends.
+    /// The start of the first edge; the others start at the end of the previous edge.
     start: Vec3,
     end: [[f64; LANES]; 3],
     normal: [[f64; LANES]; 3],
-    /// The cosine of each edge's length; not a number where there is no edge.
+    /// The cosine of each edge's length; NaN in unused lanes, so that no foot is found there.
     cosine: [f64; LANES],
     centre: Vec3,
     radius: f64,
@@ -36,16 +37,17 @@ struct Block {
 #[derive(Clone, Debug)]
 pub(super) struct Blocks(Vec<Block>);
 
-/// What a search finds.
+/// The result of a search.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found {
     /// The edge whose end is the nearest corner.
     pub(super) corner: usize,
     /// The cosine of the angle to it.
     pub(super) cosine: f64,
-    /// Of the edges that have a foot, the one with the smallest sine.
+    /// The edge with the smallest angle to its plane, of those on which the foot of the
+    /// perpendicular from the direction lies.
     pub(super) arc: usize,
-    /// The square of that sine; infinite if no edge has a foot.
+    /// The squared sine of that angle; infinite if there is no such edge.
     pub(super) square: f64,
 }
 
@@ -56,8 +58,8 @@ impl Block {
             [0, 1, 2].map(|axis| std::array::from_fn(|k| of(&lane(k)).to_array()[axis]))
         };
         let cosine = |k: usize| edges.get(k).map_or(f64::NAN, |edge| edge.cosine);
-        // Points between two corners are no farther from a centre than the corners, but for the
-        // bulge of the arc over its chord.
+        // A point of a chord is no farther from the centre than its ends; the arc lies above the
+        // chord by the sagitta 1 - cos(length/2) at most.
         let sum = edges.iter().fold(edges[0].start, |sum, edge| sum + edge.end);
         let centre = sum * (1.0 / (edges.len() + 1) as f64);
         let radius = edges.iter().fold(0.0f64, |radius, edge| {
@@ -75,8 +77,8 @@ impl Block {
         }
     }
 
-    /// The cosines of the angles to the ends, and the squared sines of those to the edges' planes,
-    /// infinite where the foot is not on the edge.
+    /// The cosines of the angles to the ends, and the squared sines of the angles to the planes of
+    /// the edges, infinite where the foot is not on the edge.
     #[inline(always)]
     fn measure(&self, v: Vec3) -> ([f64; LANES], [f64; LANES]) {
         let along = |rows: &[[f64; LANES]; 3], k: usize| {
@@ -91,7 +93,8 @@ impl Block {
         let mut squares = [0.0; LANES];
         for k in 0..LANES {
             let sine = along(&self.normal, k);
-            // v·(n × p) and v·(p' × n), each times the sine of the edge's length.
+            // The signs of v·(n × p) = (v·p′ - cos·v·p)/sin and v·(p′ × n) = (v·p - cos·v·p′)/sin,
+            // with the length of the edge as angle. `&` instead of `&&`: no branch.
             let on_edge =
                 (ends[k] >= self.cosine[k] * starts[k]) & (starts[k] >= self.cosine[k] * ends[k]);
             squares[k] = if on_edge { sine * sine } else { f64::INFINITY };
@@ -100,7 +103,7 @@ impl Block {
     }
 }
 
-/// The first place of a number among others.
+/// The first position of a number that is in the array.
 #[inline(always)]
 fn place(numbers: &[f64; LANES], number: f64) -> usize {
     let mut place = 0;
@@ -110,6 +113,7 @@ fn place(numbers: &[f64; LANES], number: f64) -> usize {
     place
 }
 
+/// The smallest number, by pairs: the comparisons of a level are independent.
 #[inline(always)]
 fn least(numbers: &[f64; LANES]) -> f64 {
     let min = |a: f64, b: f64| if a < b { a } else { b };
@@ -132,9 +136,10 @@ impl Blocks {
     /// The nearest corner and the nearest foot.
     #[inline]
     pub(super) fn search(&self, v: Vec3) -> Found {
-        // Measuring few blocks costs no more than choosing among them.
+        // For few blocks, measuring all is as fast as selecting some.
         let choose = self.0.len() > FEW;
         let mut first = 0;
+        // Start with the block of the nearest centre, so that `reach` is small from the beginning.
         if choose {
             let mut nearest = f64::INFINITY;
             for (i, block) in self.0.iter().enumerate() {
@@ -147,6 +152,7 @@ impl Blocks {
         let (mut ends, mut squares) = self.0[first].measure(v);
         let (mut cosine, mut square) = (largest(&ends), least(&squares));
         let (mut corner_block, mut arc_block) = (first, first);
+        // The chord to the nearest corner so far: |v - p|² = 2 - 2·v·p.
         let mut reach = (2.0 - 2.0 * cosine).max(0.0).sqrt();
         for (i, block) in self.0.iter().enumerate() {
             if i == first {

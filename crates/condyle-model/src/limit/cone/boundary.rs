@@ -1,7 +1,8 @@
-//! The spherical polygon: where a direction stands to it.
+//! The spherical polygon: inside test, nearest point, and projections.
 //!
-//! With the points p of the boundary counter-clockwise around the rest direction r, and the
-//! normals n = p × p' / |p × p'| of its edges, each of which r sees from inside, n·r > 0:
+//! With the points p of the boundary counter-clockwise around the rest direction r, and the inner
+//! normals n = p × p' / |p × p'| of its edges. The polygon is star-shaped about r, n·r > 0 for
+//! every edge:
 //!
 //! ```text
 //! inside           v·n ≥ 0 for the edge in whose wedge of azimuth about r v lies
@@ -10,18 +11,19 @@
 //! crossing         x ∝ (n·r)·e - (n·e)·r, with e the direction at r of the meridian through v
 //! ```
 //!
-//! No meridian meets the polygon twice, for r sees all of it; the direction -r is outside.
+//! Since the polygon is star-shaped, every meridian crosses it once; the direction -r is outside.
 
 use super::block::Blocks;
 use condyle_math::Vec3;
 
-/// How deep inside a projected direction is put: above the rounding of what is done with it next.
+/// The depth inside to which a projected direction is moved: above the rounding of later
+/// operations.
 const DEPTH: f64 = 1e-14;
-/// How far it is first moved inward.
+/// The first step inward.
 const INWARD: f64 = 1e-13;
-/// Two directions nearer than this are one.
+/// Two directions with a smaller difference count as the same.
 const SAME: f64 = 1e-9;
-/// The cosine of 87 degrees: an edge as far as that is nearly equally far all along.
+/// The cosine of 87 degrees: all points of an edge at that distance are nearly equally far.
 const POLE: f64 = 0.0523;
 
 /// An edge, from its start counter-clockwise to its end.
@@ -35,13 +37,13 @@ pub(super) struct Edge {
     pub(super) cosine: f64,
 }
 
-/// A closed line of arcs that the rest direction sees from inside.
+/// A closed polygon of great arcs, star-shaped about the rest direction.
 #[derive(Clone, Debug)]
 pub(super) struct Boundary {
     pub(super) rest: Vec3,
-    /// The directions of azimuth 0 and of a quarter turn.
+    /// The directions of azimuth 0 and 90 degrees, perpendicular to rest.
     across: [Vec3; 2],
-    /// A number that grows with the azimuth of each edge's start, in [0, 4).
+    /// The pseudo-angle (see [`azimuth`]) of each edge's start, in [0, 4), increasing.
     azimuths: Vec<f64>,
     pub(super) edges: Vec<Edge>,
     blocks: Blocks,
@@ -54,13 +56,13 @@ pub(super) struct Nearest {
     pub(super) point: Vec3,
     /// The angle to it: positive inside, negative outside.
     pub(super) distance: f64,
-    /// How the distance grows with the direction: tangent there, length 1.
+    /// The gradient of the distance with respect to the direction: tangent at it, length 1.
     pub(super) gradient: Vec3,
-    /// The direction at the point that leads inside, length 1.
+    /// The inward direction at the point, length 1.
     inward: Vec3,
 }
 
-/// A number in [0, 4] that grows with the azimuth of a point; not a number at the centre.
+/// A pseudo-angle in [0, 4] that increases with the azimuth, without atan2; NaN at the centre.
 #[inline]
 fn azimuth(x: f64, y: f64) -> f64 {
     let along = x / (x.abs() + y.abs());
@@ -73,7 +75,7 @@ impl Boundary {
         let second = rest.cross(points[0]).normalized();
         let across = [second.cross(rest), second];
         let azimuths = points.iter().enumerate().map(|(i, p)| {
-            // Rounding must not put the first one at the end.
+            // Exactly 0: rounding could give the first point a pseudo-angle near 4.
             if i == 0 { 0.0 } else { azimuth(p.dot(across[0]), p.dot(across[1])) }
         });
         let azimuths = azimuths.collect();
@@ -90,6 +92,7 @@ impl Boundary {
     /// The edge in whose wedge of azimuth a direction lies; the first one for ±rest.
     #[inline]
     pub(super) fn wedge(&self, v: Vec3) -> usize {
+        // For ±rest the pseudo-angle is NaN: no start is below it, and the subtraction saturates.
         let place = azimuth(v.dot(self.across[0]), v.dot(self.across[1]));
         self.azimuths.partition_point(|&start| start <= place).saturating_sub(1)
     }
@@ -104,7 +107,8 @@ impl Boundary {
     #[inline]
     pub(super) fn nearest(&self, v: Vec3) -> Nearest {
         let found = self.blocks.search(v);
-        // Squared sines keep the digits of small angles; a corner beyond 90 degrees never wins.
+        // sin² = c²·(1 - c²/4) from the chord c is accurate for small angles, unlike 1 - cos². The
+        // sine falls beyond 90 degrees, but every foot is nearer than a corner that far away.
         let chord = (v - self.edges[found.corner].end).norm_squared();
         let corner = chord * (1.0 - 0.25 * chord);
         if found.square.is_finite() && (found.cosine <= 0.0 || corner >= found.square) {
@@ -117,9 +121,10 @@ impl Boundary {
     fn on_edge(&self, v: Vec3, index: usize) -> Nearest {
         let edge = &self.edges[index];
         let sine = v.dot(edge.normal);
+        // v = point·cos d + n·sin d with d the distance, so the gradient is n·cos d - point·sin d.
         let foot = v - edge.normal * sine;
         let cosine = foot.norm();
-        // At the pole of the edge all of it is equally far: its middle is taken.
+        // At the pole of the edge all its points are equally far: its middle is used.
         let (point, gradient) = if cosine > 1e-12 {
             let point = foot * (1.0 / cosine);
             (point, edge.normal * cosine - point * sine)
@@ -133,25 +138,27 @@ impl Boundary {
     fn on_corner(&self, v: Vec3, index: usize) -> Nearest {
         let point = self.edges[index].end;
         let inward = self.inward_at_corner(index);
+        // The tangent at v that leads away from the corner: v·cos d - p, of length sin d, from the
+        // difference v - p to avoid cancellation.
         let away = v - point;
         let tangent = away - v * away.dot(v);
         let sine = tangent.norm();
         let side = if v.dot(inward) < 0.0 { -1.0 } else { 1.0 };
-        // At the corner itself, and opposite to it, the mean of the normals is the choice.
+        // At the corner, and opposite to it, the gradient is not defined: the mean normal is used.
         let gradient = if sine > 1e-12 { tangent * (side / sine) } else { inward };
         Nearest { point, distance: side * sine.atan2(v.dot(point)), gradient, inward }
     }
 
-    /// The mean of the normals of the edges that meet at an edge's end, length 1.
+    /// The normalised mean of the normals of the two edges that meet at the end of an edge.
     fn inward_at_corner(&self, index: usize) -> Vec3 {
         let next = if index + 1 == self.edges.len() { 0 } else { index + 1 };
         (self.edges[index].normal + self.edges[next].normal).normalized()
     }
 
-    /// How much farther than the nearest point is the best other local minimum of the distance.
+    /// By how many radians the second smallest local minimum of the distance exceeds the smallest.
     ///
-    /// For a direction outside; infinite where there is none. Only points seen from outside count:
-    /// the others can become nearest only to a direction inside.
+    /// For a direction outside; infinite if there is only one. Only minima whose edges face the
+    /// direction count: the others can become nearest only to a direction inside.
     pub(super) fn margin(&self, v: Vec3, nearest: &Nearest) -> f64 {
         if v.dot(nearest.point).abs() < POLE {
             return 0.0;
@@ -160,13 +167,13 @@ impl Boundary {
         let (mut square, mut corner) = (f64::INFINITY, f64::NEG_INFINITY);
         let last = &self.edges[self.edges.len() - 1];
         let mut start = v.dot(last.end);
-        // Of the edge before: its sine, and whether its foot lies beyond its end.
+        // Of the previous edge: its sine, and whether its foot is beyond its end.
         let mut before = v.dot(last.normal);
         let mut beyond = v.dot(last.start) <= last.cosine * start;
         for edge in &self.edges {
             let (end, sine) = (v.dot(edge.end), v.dot(edge.normal));
             let (from_start, to_end) = (end - edge.cosine * start, start - edge.cosine * end);
-            // The corner at the start is nearer than both edges, and seen from outside.
+            // A local minimum at a corner: both feet are beyond it, and it faces the direction.
             if beyond
                 && from_start <= 0.0
                 && before + sine < 0.0
@@ -175,6 +182,7 @@ impl Boundary {
             {
                 corner = start;
             }
+            // A local minimum on an edge.
             if from_start >= 0.0 && to_end >= 0.0 && sine < 0.0 && sine * sine < square {
                 let foot = v - edge.normal * sine;
                 if other(foot * (1.0 / foot.norm())) {
@@ -188,30 +196,34 @@ impl Boundary {
         (by_edge.min(by_corner) - nearest.distance.abs()).max(0.0)
     }
 
-    /// Where the meridian from rest through a direction crosses the boundary; none for ±rest.
+    /// The crossing of the boundary with the meridian from rest through a direction; `None` for
+    /// ±rest.
     pub(super) fn crossing(&self, v: Vec3) -> Option<Vec3> {
         let outward = v - self.rest * v.dot(self.rest);
         if outward.norm() < 1e-12 {
             return None;
         }
         let outward = outward.normalized();
+        // (n·r)·e - (n·e)·r is perpendicular to n and in the plane of r and e; n·r > 0 puts it on
+        // the side of e.
         let normal = self.edges[self.wedge(v)].normal;
         Some((outward * normal.dot(self.rest) - self.rest * normal.dot(outward)).normalized())
     }
 
-    /// The nearest point, moved so little inside that it passes every later test.
+    /// The nearest point, moved inside by as little as makes it pass later inside tests.
     pub(super) fn settle_nearest(&self, nearest: &Nearest) -> Vec3 {
         self.settle(nearest.point, nearest.inward)
     }
 
-    /// A direction inside, moved deeper where it is nearly outside.
+    /// A direction inside, moved deeper if it is within rounding of the boundary.
     pub(super) fn settle_inside(&self, v: Vec3) -> Vec3 {
         self.settle(v, self.edges[self.wedge(v)].normal)
     }
 
-    /// A direction at the boundary or inside, moved inside by rounding's worth if it is not.
+    /// A direction at the boundary, moved inside to [`DEPTH`] if it is not that deep.
     ///
-    /// Tries the inward direction, then toward rest, which leads inside from every point.
+    /// Tries the inward direction, then the direction toward rest, which leads inside from every
+    /// point of a star-shaped polygon. The steps grow until one succeeds.
     pub(super) fn settle(&self, point: Vec3, inward: Vec3) -> Vec3 {
         if self.depth(point) >= DEPTH {
             return point;
@@ -232,7 +244,7 @@ impl Boundary {
 
     /// The sine of the distance to the great circle of the wedge's edge.
     ///
-    /// Where rounding could choose the wedge beside it, the smaller of the two.
+    /// If rounding could select the adjacent wedge, the smaller of the two.
     fn depth(&self, v: Vec3) -> f64 {
         let i = self.wedge(v);
         let count = self.edges.len();

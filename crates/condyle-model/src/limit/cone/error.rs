@@ -1,8 +1,8 @@
-//! What cannot be a cone.
+//! Errors of the construction of a cone.
 
 use std::fmt;
 
-/// Why points do not make a [`Cone`](super::Cone), with the positions of the points meant.
+/// Why points do not make a [`Cone`](super::Cone), with the positions of the points concerned.
 ///
 /// Positions count from 0 in the order in which the points were given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,7 +14,7 @@ pub enum ConeError {
         /// The point.
         point: usize,
     },
-    /// Less than three points enclose nothing.
+    /// There are fewer than three points.
     TooFewPoints {
         /// How many were given.
         count: usize,
@@ -23,17 +23,17 @@ pub enum ConeError {
     TooManyPoints {
         /// How many were given.
         count: usize,
-        /// How often their number is to be doubled.
+        /// How often their number would be doubled.
         subdivisions: u32,
     },
-    /// A lower twist bound lies above the upper one.
+    /// A lower twist bound is above the upper one.
     TwistCrossing {
-        /// The point; none for the bounds at rest.
+        /// The point; `None` for the bounds at rest.
         point: Option<usize>,
     },
-    /// A twist bound is not finite, or lies beyond a full turn.
+    /// A twist bound is not in [-2π, 2π].
     TwistRange {
-        /// The point; none for the bounds at rest.
+        /// The point; `None` for the bounds at rest.
         point: Option<usize>,
     },
     /// A point has twist bounds and the rest direction has none.
@@ -41,36 +41,37 @@ pub enum ConeError {
         /// The first such point.
         point: usize,
     },
-    /// Two neighbours have one direction.
+    /// Two consecutive points have the same direction.
     Coincident {
         /// The first of the two.
         from: usize,
         /// The second of the two.
         to: usize,
     },
-    /// Two neighbours point opposite ways: no shortest arc joins them.
+    /// Two consecutive points are opposite: the shortest arc between them is not unique.
     HalfTurn {
         /// The first of the two.
         from: usize,
         /// The second of the two.
         to: usize,
     },
-    /// A point lies opposite to the rest direction, which is always outside.
+    /// A point is opposite to the rest direction; that direction is always outside.
     OppositeRest {
         /// The point.
         point: usize,
     },
     /// The rest direction is not strictly inside.
     RestOutside,
-    /// The rest direction does not see the whole edge between two points.
+    /// Part of the edge between two points is not visible from the rest direction: the polygon is
+    /// not star-shaped about it.
     ///
-    /// An edge seen at less than 0.06 degrees, one along a meridian, counts as not seen.
+    /// An edge at less than 0.06 degrees to a meridian counts as not visible.
     Hidden {
         /// Where the edge starts.
         from: usize,
         /// Where it ends.
         to: usize,
-        /// Whether it is the refined curve between the points that is hidden, not the plain arc.
+        /// Whether the refined boundary between the points is hidden, not the arc.
         refined: bool,
     },
     /// The boundary runs around the rest direction more than once.

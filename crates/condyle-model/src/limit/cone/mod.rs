@@ -1,27 +1,28 @@
-//! Where a bone may point, and how far it may then turn about itself.
+//! Joint cones: limits of the swing and the twist of a ball joint.
 //!
-//! A ball joint's rotation R (the bone's frame in the joint's) takes the bone's long axis at rest,
-//! the direction r, to v = R·r. R is split as `swing · twist`: the bone turns about r by the angle
-//! τ, then swings from r to v along the shortest arc. A cone allows v inside a polygon of great
-//! arcs, and τ between two bounds that depend on v: a raised arm turns less about itself than a
-//! hanging one.
+//! The rotation R of a ball joint (the bone's frame in the joint's) maps the long axis of the bone
+//! at rest, the direction r, to v = R·r. R is decomposed as `swing · twist`: a rotation about r by
+//! the angle τ, followed by the swing from r to v along the shortest arc. A cone allows v inside a
+//! spherical polygon of great arcs, and τ between two bounds that depend on v: the twist of a
+//! raised arm is more limited than that of a hanging arm.
 //!
 //! ```text
 //! g₁ = signed angle from v to the polygon      g₂ = τ - lower(v)      g₃ = upper(v) - τ
 //! legal: g ≥ 0        dg₁/dω = v × ∇d        dg₂/dω = (v + r)/(1 + v·r) - v × ∇lower
 //! ```
 //!
-//! for Ṙ = \[ω\]× R. The polygon may be concave and larger than a hemisphere; r sees all of it
-//! (no edge runs along a meridian), and -r is always outside. Its corners are control points, refined by an interpolating scheme
-//! (`outline.rs`); `boundary.rs` and `twist.rs` hold the geometry and say where it has kinks. The
-//! distance has kinks where two points of the boundary are equally near.
+//! for Ṙ = \[ω\]× R. The polygon may be concave and larger than a hemisphere. It is star-shaped
+//! about r (no edge runs along a meridian), and -r is always outside. Its corners are control
+//! points, refined by an interpolating subdivision scheme (`outline.rs`); the geometry and its
+//! kinks are described in `boundary.rs` and `twist.rs`. The distance has kinks where two points of
+//! the boundary are equally near.
 //!
-//! An illegal rotation is made legal in this order: the direction is moved to the boundary, the
-//! twist is carried along unchanged, and then held to the bounds at the *new* direction. Moving the
-//! direction to the nearest point of the boundary is the default. Toward the rest direction, as in
-//! Shao & Ng-Thow-Hing 2003, section 4.6, is the other choice: it is continuous wherever v ≠ -r
-//! even where the polygon is concave, and moves farther. Their text leaves open how the polygon is
-//! subdivided, what happens to the twist, and what is done at -r; these are the readings above.
+//! An illegal rotation is made legal in this order: the direction is projected to the boundary with
+//! the twist unchanged, then the twist is clamped to the bounds at the *new* direction. The default
+//! projection is to the nearest point of the boundary. The alternative, along the meridian toward
+//! the rest direction as in Shao & Ng-Thow-Hing 2003, section 4.6, is continuous for v ≠ -r even if
+//! the polygon is concave, but moves farther. The paper does not specify the subdivision of the
+//! polygon, the treatment of the twist, and the case -r; the choices are those described here.
 
 mod block;
 mod boundary;
@@ -36,80 +37,86 @@ use condyle_math::{Mat3, Vec3};
 use outline::unit;
 use twist::TwistBounds;
 
-/// A twist that is outside by less than this is left alone.
+/// A twist that violates its bounds by less than this counts as legal.
 ///
-/// Making a rotation from a legal twist rounds; without room the answer would be moved again.
+/// A rotation computed from a legal twist has rounding errors; without a tolerance it would be
+/// moved again.
 const TWIST_ROOM: f64 = 1e-10;
 
-/// A corner of a cone: a direction the bone can just reach.
+/// A corner of a cone: a direction at the limit of the bone's reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConePoint {
-    /// Where the bone points, of any length but zero, in the joint's frame in the parent.
+    /// The direction of the bone, of any length except zero, in the joint's frame in the parent.
     pub direction: Vec3,
-    /// Lowest and highest twist there in radians; those at rest if none.
+    /// Lowest and highest twist there in radians; `None` for those at rest.
     pub twist: Option<[f64; 2]>,
 }
 
-/// Where a direction outside a cone goes.
+/// How a direction outside a cone is projected to its boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Projection {
     /// To the nearest point of the boundary.
     #[default]
     Nearest,
-    /// To where the meridian from rest through the direction crosses the boundary.
+    /// Along the meridian from rest through the direction, to its crossing with the boundary.
     ///
-    /// Opposite to rest, where every meridian passes, to the nearest point of the boundary.
+    /// The direction opposite to rest, which is on every meridian, is projected to the nearest
+    /// point of the boundary.
     TowardRest,
 }
 
-/// A legal direction for any direction.
+/// The projection of a direction, from [`Cone::project`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Projected {
-    /// The same vector if that was inside, else one of length 1 at the boundary, just inside.
+    /// The given vector if it is inside, otherwise a vector of length 1 at the boundary, just
+    /// inside.
     pub direction: Vec3,
-    /// By how many radians it was moved; 0 if it was inside.
+    /// The angle in radians by which it was moved; 0 if it is inside.
     pub distance: f64,
-    /// How near the place is where the answer jumps, in radians; infinite if there is none.
+    /// A measure, in radians, of the distance to the nearest input where the projection is
+    /// discontinuous; infinite if there is none.
     ///
-    /// For [`Projection::Nearest`] how much farther the best separate point of the boundary is: a
-    /// move by half of it or less does not make the answer jump. Where the boundary is 87 to 93
-    /// degrees away it is 0, for an edge is nearly equally far there all along. It is infinite
-    /// outside a convex polygon up to there. For [`Projection::TowardRest`] the angle to the
-    /// direction opposite to rest.
+    /// For [`Projection::Nearest`] it is by how much the second nearest local minimum of the
+    /// distance to the boundary exceeds the nearest: the projection is continuous within half of
+    /// it. It is 0 if the boundary is 87 to 93 degrees away, because all points of an edge are
+    /// nearly equally far there, and infinite at smaller distances from a convex polygon. For
+    /// [`Projection::TowardRest`] it is the angle to the direction opposite to rest.
     pub margin: f64,
 }
 
-/// A legal rotation for any rotation.
+/// The legal rotation for a rotation, from [`Cone::legal`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Legal {
-    /// The same matrix, bit for bit, if it was legal.
+    /// The given matrix, unchanged, if it is legal.
     pub rotation: Mat3,
     /// Whether it was changed.
     pub moved: bool,
-    /// How near the place is where the answer jumps, in radians; infinite if there is none.
+    /// A measure, in radians, of the distance to the nearest input where the result is
+    /// discontinuous; infinite if there is none.
     ///
-    /// The smallest of the direction's margin, the angle of a moved direction to the one opposite
-    /// to rest (where the twist turns fast), and for a moved twist twice its angle to the one from
-    /// which both bounds are equally far.
+    /// The smallest of: the margin of a moved direction, as in [`Projected::margin`]; the angle of
+    /// a moved direction to the one opposite to rest, near which the twist varies fast; and, for a
+    /// clamped twist, twice its angle to the twist from which both bounds are equally far.
     pub margin: f64,
 }
 
 /// The limit of a ball joint: a spherical polygon of directions with bounds of twist.
 ///
-/// A rotation R (the bone's frame in the joint's) takes the long axis at rest r to the direction
-/// v = R·r, and R = swing · twist with the shortest swing from r to v and a turn by τ about r. Legal
-/// is a v inside the polygon, which may be concave and larger than a hemisphere, with
-/// lower(v) ≤ τ ≤ upper(v). The polygon goes through all points given; bounds at rest b₀ and on the
-/// boundary b₁ are joined along each meridian by (1 - s)·b₀ + s·b₁, s = ρ²·(3 - 2ρ), with ρ the
-/// fraction of the way. After Shao & Ng-Thow-Hing 2003, section 4.6.
+/// A rotation R (the bone's frame in the joint's) maps the long axis at rest r to the direction
+/// v = R·r, and R = swing · twist with the shortest swing from r to v and a rotation by τ about r.
+/// R is legal if v is inside the polygon, which may be concave and larger than a hemisphere, and
+/// lower(v) ≤ τ ≤ upper(v). The polygon passes through all given points. Twist bounds are
+/// interpolated along each meridian between b₀ at rest and b₁ on the boundary by
+/// (1 - s)·b₀ + s·b₁, s = ρ²·(3 - 2ρ), with ρ the fraction of the angle. After Shao & Ng-Thow-Hing
+/// 2003, section 4.6.
 ///
-/// A direction or a rotation that says nothing (zero, or not finite) breaks no limit: it is inside,
+/// A degenerate direction or rotation (zero or not finite) violates no limit: it counts as inside,
 /// at an infinite distance, and is returned unchanged.
 ///
 /// ```
 /// use condyle_math::{Mat3, Vec3};
 /// use condyle_model::limit::{Cone, ConePoint, Projection};
-/// // A bone along x that can reach 45 degrees to four sides and turn by 0.5 either way.
+/// // A bone along x that swings by 45 degrees to four sides and twists by ±0.5.
 /// let corner = |y, z| ConePoint { direction: Vec3::new(1.0, y, z), twist: None };
 /// let corners = vec![corner(1.0, 0.0), corner(0.0, 1.0), corner(-1.0, 0.0), corner(0.0, -1.0)];
 /// let cone = Cone::new(Vec3::X, Some([-0.5, 0.5]), corners, 0, Projection::Nearest).unwrap();
@@ -131,7 +138,7 @@ pub struct Cone {
     twist: Option<TwistBounds>,
 }
 
-/// All else follows from what was given.
+/// Compares the arguments of [`Cone::new`]; the other fields are computed from them.
 impl PartialEq for Cone {
     fn eq(&self, other: &Self) -> bool {
         let given =
@@ -141,17 +148,17 @@ impl PartialEq for Cone {
 }
 
 impl Cone {
-    /// The most points that a refined boundary may have.
+    /// The largest number of points of a refined boundary.
     pub const MOST_POINTS: usize = 512;
 
-    /// The cone around a rest direction through points in their order around it, either way round.
+    /// The cone around a rest direction, with a boundary through points in cyclic order around it,
+    /// clockwise or counter-clockwise.
     ///
-    /// `rest` is the bone's long axis at rest, of any length but zero; bounds of twist are in
-    /// radians, from -2π to 2π, lower first. Their number of points is doubled `subdivisions`
-    /// times.
+    /// `rest` is the long axis of the bone at rest, of any length except zero. Twist bounds are in
+    /// radians, from -2π to 2π, lower first. The number of points is doubled `subdivisions` times.
     ///
     /// # Errors
-    /// [`ConeError`] says which points do not make a cone, and what would.
+    /// [`ConeError`] with the positions of the points that do not make a cone.
     pub fn new(
         rest: Vec3,
         twist_at_rest: Option<[f64; 2]>,
@@ -170,12 +177,12 @@ impl Cone {
         Ok(Self { rest, twist_at_rest, points, subdivisions, projection, boundary, twist })
     }
 
-    /// The bone's long axis at rest, as given.
+    /// The long axis of the bone at rest, as given.
     pub fn rest(&self) -> Vec3 {
         self.rest
     }
 
-    /// The bounds of twist at rest in radians, if twist is bounded.
+    /// The twist bounds at rest in radians; `None` if the twist is unlimited.
     pub fn twist_at_rest(&self) -> Option<[f64; 2]> {
         self.twist_at_rest
     }
@@ -185,19 +192,19 @@ impl Cone {
         &self.points
     }
 
-    /// How often the number of points was doubled.
+    /// The number of subdivisions, each of which doubled the number of points.
     pub fn subdivisions(&self) -> u32 {
         self.subdivisions
     }
 
-    /// Where a direction outside goes.
+    /// How a direction outside is projected.
     pub fn projection(&self) -> Projection {
         self.projection
     }
 
-    /// The corners of the polygon that is tested, of length 1, counter-clockwise around rest.
+    /// The corners of the refined polygon, of length 1, counter-clockwise around rest.
     ///
-    /// What is drawn from them, with great arcs between, is the limit itself.
+    /// Connected by great arcs they are exactly the boundary that is tested.
     pub fn boundary(&self) -> impl ExactSizeIterator<Item = Vec3> {
         self.boundary.edges.iter().map(|edge| edge.start)
     }
@@ -207,18 +214,19 @@ impl Cone {
         unit(direction).is_none_or(|v| self.boundary.contains(v))
     }
 
-    /// How far inside a direction is, in radians, and how that grows with it.
+    /// The signed distance of a direction from the boundary in radians, and its gradient.
     ///
-    /// The geodesic angle to the nearest point of the boundary, negative outside. The gradient has
-    /// length 1 and is tangent to the sphere at the direction, taken with length 1; on a corner it
-    /// is the mean of the normals of its edges. It jumps where two points are equally near.
+    /// The distance is the geodesic angle to the nearest point of the boundary, negative outside.
+    /// The gradient has length 1 and is tangent to the sphere at the normalised direction; on a
+    /// corner it is the mean of the normals of its edges. It is discontinuous where two points are
+    /// equally near.
     pub fn distance(&self, direction: Vec3) -> (f64, Vec3) {
         let Some(v) = unit(direction) else { return (f64::INFINITY, Vec3::ZERO) };
         let nearest = self.boundary.nearest(v);
         (nearest.distance, nearest.gradient)
     }
 
-    /// The direction itself if it is inside, else the legal one that the projection chooses.
+    /// The direction itself if it is inside, otherwise its projection to the boundary.
     pub fn project(&self, direction: Vec3) -> Projected {
         match unit(direction) {
             Some(v) if !self.boundary.contains(v) => self.project_outside(v),
@@ -234,6 +242,7 @@ impl Cone {
         };
         let (direction, margin) = match crossing {
             Some(point) => {
+                // The angle from v to -r.
                 let opposite = v.cross(boundary.rest).norm().atan2(-v.dot(boundary.rest));
                 (boundary.settle(point, boundary.rest), opposite)
             }
@@ -250,19 +259,21 @@ impl Cone {
         Projected { direction, distance, margin }
     }
 
-    /// Lowest and highest twist in radians for a direction, and how they grow with it.
+    /// The lowest and highest twist in radians for a direction, and their gradients.
     ///
-    /// The gradients are tangent to the sphere at the direction, taken with length 1. Outside the
-    /// polygon the bounds are those where the meridian from rest crosses it. None if twist is free.
+    /// The gradients are tangent to the sphere at the normalised direction. Outside the polygon the
+    /// bounds are those at the crossing of the meridian from rest. `None` if the twist is unlimited
+    /// or the direction is degenerate.
     pub fn twist_bounds(&self, direction: Vec3) -> Option<([f64; 2], [Vec3; 2])> {
         Some(self.twist.as_ref()?.at(&self.boundary, unit(direction)?))
     }
 
-    /// The rotation itself if it is legal, else a legal one near it.
+    /// The rotation itself if it is legal, otherwise a legal one near it.
     ///
-    /// The direction is projected, the twist carried and then held to the nearer of the bounds at
-    /// the new direction, the short way around the circle. Where the bone points opposite to rest
-    /// its twist is undetermined and taken as 0. A twist outside by less than 1e-10 counts as legal.
+    /// The direction is projected, with the twist unchanged; then the twist is clamped to the
+    /// nearer of the bounds at the new direction, the short way around the circle. If the bone
+    /// points opposite to rest, its twist is undetermined and taken as 0. A twist that violates its
+    /// bounds by less than 1e-10 counts as legal.
     pub fn legal(&self, rotation: Mat3) -> Legal {
         let unchanged = Legal { rotation, moved: false, margin: f64::INFINITY };
         let rest = self.boundary.rest;
@@ -271,6 +282,7 @@ impl Cone {
         if inside && self.twist.is_none() {
             return unchanged;
         }
+        // The common case first: no bounds are evaluated if the twist is legal in every direction.
         let mut twist = twist::twist(&rotation, rest, v);
         if inside && self.twist.as_ref().is_some_and(|bounds| bounds.always_holds(twist)) {
             return unchanged;
@@ -291,7 +303,7 @@ impl Cone {
             }
             if outside {
                 if inside {
-                    // The new matrix rounds, which must not put the direction outside.
+                    // Rounding of the new matrix must not move the direction outside.
                     direction = self.boundary.settle_inside(v);
                     at = bounds.at(&self.boundary, direction).0;
                 }
@@ -302,17 +314,19 @@ impl Cone {
         Legal { rotation: twist::rotation(rest, direction, twist), moved: true, margin }
     }
 
-    /// Three numbers that are none of them negative just where a rotation is legal, with gradients.
+    /// The three limit rows g of a rotation, with their gradients: the rotation is legal if none is
+    /// negative.
     ///
-    /// Signed distance of the direction, twist above its lower bound, twist below its upper bound,
-    /// in radians, the twist taken the short way around the circle. Each gradient is the derivative
-    /// by the angular velocity ω in the parent's frame, Ṙ = \[ω\]× R. Infinite, with a gradient of
-    /// zero, where nothing is bounded. `rotation` is taken to be a rotation.
+    /// The signed distance of the direction, τ - lower and upper - τ, in radians, with twists
+    /// measured the short way around the circle. Each gradient is the derivative with respect to
+    /// the angular velocity ω in the parent's frame, Ṙ = \[ω\]× R. An absent limit has the value ∞
+    /// and the gradient 0. `rotation` must be a rotation matrix.
     pub fn rows(&self, rotation: Mat3) -> [(f64, Vec3); 3] {
         let rest = self.boundary.rest;
         let free = (f64::INFINITY, Vec3::ZERO);
         let Some(v) = unit(rotation * rest) else { return [free; 3] };
         let nearest = self.boundary.nearest(v);
+        // v̇ = ω × v, so ḋ = ∇d·(ω × v) = ω·(v × ∇d); likewise for the bounds of twist.
         let swing = (nearest.distance, v.cross(nearest.gradient));
         let Some(bounds) = &self.twist else { return [swing, free, free] };
         let (at, gradients) = bounds.at(&self.boundary, v);

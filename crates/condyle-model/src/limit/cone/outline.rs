@@ -1,47 +1,48 @@
-//! From control points to a closed line of many points, counter-clockwise around the rest direction.
+//! Subdivision of the control points to the refined polygon, counter-clockwise around the rest
+//! direction.
 //!
-//! The four-point scheme of Dyn, Levin & Gregory 1987 puts a point between b and c of four
-//! neighbours a, b, c, d, and so doubles their number:
+//! The four-point scheme of Dyn, Levin & Gregory 1987 inserts a point between b and c of four
+//! consecutive points a, b, c, d, which doubles the number of points:
 //!
 //! ```text
 //! q = 9/16·(b + c) - 1/16·(a + d)
 //! ```
 //!
-//! It keeps every point that was there, so a measured direction stays on the boundary; a scheme
-//! that cuts corners would tighten the limit. The formula is applied in the azimuthal equidistant
-//! chart about the rest direction, q = θ·(cos φ, sin φ) with θ the angle from rest and φ the
-//! azimuth, which reaches beyond a hemisphere. Twist bounds are halved between neighbours instead:
-//! bounds that do not cross at the points then cross nowhere.
+//! The scheme is interpolating: every control point stays on the boundary, whereas a corner-cutting
+//! scheme would tighten the limit. The formula is applied in the azimuthal equidistant chart about
+//! the rest direction, q = θ·(cos φ, sin φ) with θ the angle from rest and φ the azimuth, which
+//! covers more than a hemisphere. Twist bounds are interpolated linearly instead: bounds that do
+//! not cross at the points then cross nowhere.
 
 use super::{Cone, ConeError, ConePoint};
 use condyle_math::Vec3;
 use std::f64::consts::{PI, TAU};
 
-/// The shortest edge, and how near a point may come to rest or to its opposite.
+/// The smallest sine of the length of an edge, and of the angle of a point to rest or its opposite.
 ///
-/// Far above rounding, far below what anybody measures: 0.2 arc seconds.
+/// Far above rounding, far below any measurement: 0.2 arc seconds.
 const LEAST: f64 = 1e-6;
-/// The least sine of the angle at which the rest direction sees an edge, 0.06 degrees.
+/// The smallest sine of the angle between rest and the plane of an edge, 0.06 degrees.
 ///
-/// On an edge that runs along a meridian the crossing of the meridian, and with it every bound of
-/// twist, changes abruptly with the azimuth.
+/// On an edge along a meridian the crossing of the meridian, and with it the twist bounds, change
+/// abruptly with the azimuth.
 const SEEN: f64 = 1e-3;
 
-/// A point of the outline: its direction, of length 1, and its bounds of twist.
+/// A point of the outline: its direction, of length 1, and its twist bounds.
 #[derive(Clone, Copy)]
 pub(super) struct OutlinePoint {
     pub(super) direction: Vec3,
     pub(super) twist: Option<[f64; 2]>,
 }
 
-/// The vector of length 1 along any vector; none along zero or one that is not finite.
+/// The normalised vector; `None` if it is zero or not finite.
 #[inline]
 pub(super) fn unit(vector: Vec3) -> Option<Vec3> {
     let largest = vector.x.abs().max(vector.y.abs()).max(vector.z.abs());
     if !vector.is_finite() || largest == 0.0 {
         return None;
     }
-    // Squares of very long or very short vectors leave the range of numbers.
+    // The squares of very large or very small components would overflow or underflow.
     let scaled = if (1e-100..1e100).contains(&largest) {
         vector
     } else {
@@ -82,6 +83,7 @@ pub(super) fn outline(
     if clockwise {
         line.reverse();
     }
+    // The positions of an edge's ends as the caller gave the points, before the reversal.
     let edge = |index: usize, refined| {
         let next = (index + 1) % count;
         let (from, to) =
@@ -93,6 +95,7 @@ pub(super) fn outline(
         None => ConeError::WoundTwice,
     })?;
     let chart = Chart::new(rest, line[0].direction);
+    // After s steps, edge `index` is a part of the given edge `index >> s`.
     for step in 1..=subdivisions {
         line = refined(&chart, &line).map_err(|index| edge(index >> (step - 1), true))?;
     }
@@ -105,14 +108,14 @@ pub(super) fn outline(
 
 fn check_twist(bounds: Option<[f64; 2]>, point: Option<usize>) -> Result<(), ConeError> {
     let Some([lower, upper]) = bounds else { return Ok(()) };
-    // Not a number is in no range.
+    // NaN is in no range.
     if !(-TAU..=TAU).contains(&lower) || !(-TAU..=TAU).contains(&upper) {
         return Err(ConeError::TwistRange { point });
     }
     if lower > upper { Err(ConeError::TwistCrossing { point }) } else { Ok(()) }
 }
 
-/// What must hold before an azimuth, an edge and an inside mean anything.
+/// Checks that azimuths and edges are well defined and that rest is inside.
 fn check_edges(rest: Vec3, line: &[OutlinePoint]) -> Result<(), ConeError> {
     let count = line.len();
     for (from, point) in line.iter().enumerate() {
@@ -134,6 +137,7 @@ fn check_edges(rest: Vec3, line: &[OutlinePoint]) -> Result<(), ConeError> {
             });
         }
         let normal = normal.normalized();
+        // The foot of rest is on the arc: rest must not be on the edge itself.
         let between = rest.dot(normal.cross(p)) > 0.0 && rest.dot(q.cross(normal)) > 0.0;
         if between && rest.dot(normal).abs() < LEAST {
             return Err(ConeError::RestOutside);
@@ -142,22 +146,24 @@ fn check_edges(rest: Vec3, line: &[OutlinePoint]) -> Result<(), ConeError> {
     if winding(rest, line) == 0 { Err(ConeError::RestOutside) } else { Ok(()) }
 }
 
-/// How often the line runs around the rest direction, counter-clockwise.
+/// The winding number of the line around the rest direction, counter-clockwise.
 fn winding(rest: Vec3, line: &[OutlinePoint]) -> i64 {
     let mut turned = 0.0;
     for (i, point) in line.iter().enumerate() {
         let (p, q) = (point.direction, line[(i + 1) % line.len()].direction);
+        // The change of azimuth, from sine and cosine of the projections across rest.
         turned += rest.dot(p.cross(q)).atan2(p.dot(q) - rest.dot(p) * rest.dot(q));
     }
     (turned / TAU).round() as i64
 }
 
-/// The first edge of a counter-clockwise line that is hidden, or none where it winds twice.
+/// Checks that every edge of a counter-clockwise line is visible from rest and that it winds once;
+/// the error is the first hidden edge, or `None` for another winding number.
 fn check_visible(rest: Vec3, line: &[OutlinePoint]) -> Result<(), Option<usize>> {
     for (i, point) in line.iter().enumerate() {
         let (p, q) = (point.direction, line[(i + 1) % line.len()].direction);
         let normal = p.cross(q);
-        // Points given are apart; refined ones may meet.
+        // The given points are distinct; refined ones may coincide.
         if normal.norm() < LEAST * LEAST || rest.dot(normal) < SEEN * normal.norm() {
             return Err(Some(i));
         }
@@ -165,7 +171,7 @@ fn check_visible(rest: Vec3, line: &[OutlinePoint]) -> Result<(), Option<usize>>
     if winding(rest, line) == 1 { Ok(()) } else { Err(None) }
 }
 
-/// The line with a point between each two, or the first edge that leaves the chart.
+/// One subdivision step; the error is the first edge whose new point is outside the chart.
 fn refined(chart: &Chart, line: &[OutlinePoint]) -> Result<Vec<OutlinePoint>, usize> {
     let count = line.len();
     let flat: Vec<[f64; 2]> = line.iter().map(|point| chart.flat(point.direction)).collect();
@@ -189,7 +195,7 @@ struct Chart {
 }
 
 impl Chart {
-    /// With its first axis toward a direction.
+    /// The chart with azimuth 0 toward a direction.
     fn new(rest: Vec3, toward: Vec3) -> Self {
         let second = rest.cross(toward).normalized();
         Self { rest, across: [second.cross(rest), second] }
@@ -202,7 +208,8 @@ impl Chart {
         [x / sine * angle, y / sine * angle]
     }
 
-    /// None for what would lie as far from rest as the opposite direction, or farther.
+    /// The direction at a point of the chart; `None` at rest, and at or beyond the opposite
+    /// direction.
     fn direction(&self, [x, y]: [f64; 2]) -> Option<Vec3> {
         let angle = x.hypot(y);
         if !(LEAST..PI - LEAST).contains(&angle) {

@@ -1,32 +1,33 @@
-//! The turn of the bone about itself, and its bounds for each direction.
+//! The twist of a rotation, and its bounds as functions of the direction.
 //!
-//! The twist of R about r is the angle of the rotation about r nearest to R. With v = R·r,
+//! The twist of R about r is the angle of the rotation about r that is nearest to R. With v = R·r,
 //!
 //! ```text
 //! τ = atan2(vee(R - Rᵀ)·r, trace R - r·v)        dτ/dω = (v + r) / (1 + v·r)   for Ṙ = [ω]× R
 //! ```
 //!
-//! the same angle that `condyle_math::SwingTwist` splits off. Its bounds are given at rest, b₀, and
-//! at the points of the boundary. With i the edge whose wedge v lies in,
+//! the same angle as that of `condyle_math::SwingTwist`. Its bounds are given at rest, b₀, and at
+//! the points of the boundary. With i the edge in whose wedge v lies,
 //!
 //! ```text
 //! b(v) = (1 - s)·b₀ + s·((1 - t)·bᵢ + t·bᵢ₊₁)        s = ρ²·(3 - 2ρ)
 //! t = β / (α + β)    α = -e·(r × pᵢ₊₁)    β = e·(r × pᵢ)      where the meridian meets the chord
-//! ρ = θ / θ*         θ = angle(r, v)      θ* = atan2(n·r, -n·e)      held to 1 beyond the edge
+//! ρ = θ / θ*         θ = angle(r, v)      θ* = atan2(n·r, -n·e)      clamped to 1 beyond the edge
 //! ```
 //!
-//! e is the direction at r of the meridian through v. Continuous everywhere but at -r. No kink at
-//! rest, where s starts flat, nor across the boundary, where it ends flat; where v passes from one
-//! wedge to the next the slope in azimuth jumps.
+//! e is the direction at r of the meridian through v. The bounds are continuous everywhere except
+//! at
+//! -r. They have no kink at rest and at the boundary, where the slope of s is 0; between two wedges
+//! their derivative with respect to the azimuth is discontinuous.
 
 use super::boundary::Boundary;
 use condyle_math::{Mat3, Vec3};
 use std::f64::consts::{PI, TAU};
 
-/// Where 1 + v·r is less, the bone points opposite to rest and its twist is undetermined.
+/// Below this value of 1 + v·r the bone points opposite to rest and its twist is undetermined.
 const HALF_TURN: f64 = 1e-14;
 
-/// The turn of a rotation about `rest`, in (-π, π]; 0 where the swing is a half turn.
+/// The twist of a rotation about `rest`, in (-π, π]; 0 if the swing is a half turn.
 ///
 /// `direction` is the rotation's image of `rest`; both have length 1.
 #[inline]
@@ -38,13 +39,13 @@ pub(super) fn twist(rotation: &Mat3, rest: Vec3, direction: Vec3) -> f64 {
     let turn = Vec3::new(y.z - z.y, z.x - x.z, x.y - y.x).dot(rest);
     let angle = turn.atan2(x.x + y.y + z.z - rest.dot(direction));
     if !angle.is_finite() {
-        // Only a matrix that is far from a rotation.
+        // Possible only for a matrix that is far from a rotation.
         return 0.0;
     }
     if angle <= -PI { PI } else { angle }
 }
 
-/// The derivative of the twist for a rotation vector on the left; zero at a half turn of swing.
+/// The derivative of the twist with respect to ω, Ṙ = \[ω\]× R; zero at a half turn of swing.
 #[inline]
 pub(super) fn twist_rate(rest: Vec3, direction: Vec3) -> Vec3 {
     if half_turn(rest, direction) {
@@ -57,14 +58,15 @@ fn half_turn(rest: Vec3, direction: Vec3) -> bool {
     1.0 + direction.dot(rest) < HALF_TURN
 }
 
-/// The rotation with this direction and this twist: the shortest swing after the turn.
+/// The rotation with this direction and this twist: the shortest swing after the twist.
 pub(super) fn rotation(rest: Vec3, direction: Vec3, twist: f64) -> Mat3 {
     let axis = rest.cross(direction);
     let (sine, cosine) = (axis.norm(), rest.dot(direction));
     let swing = if sine > 1e-12 {
         Mat3::rotation_about(axis * (1.0 / sine), (sine, cosine))
     } else {
-        // A direction is never opposite to rest here, and a turn by less than 1e-12 is its vector.
+        // The direction is never opposite to rest here. A rotation by less than 1e-12 equals, to
+        // rounding, the product of three with the components of its vector as sines.
         Mat3::rotation_about(Vec3::X, (axis.x, 1.0))
             * Mat3::rotation_about(Vec3::Y, (axis.y, 1.0))
             * Mat3::rotation_about(Vec3::Z, (axis.z, 1.0))
@@ -72,7 +74,7 @@ pub(super) fn rotation(rest: Vec3, direction: Vec3, twist: f64) -> Mat3 {
     swing * Mat3::rotation_about(rest, twist.sin_cos())
 }
 
-/// A twist against its bounds, the short way around the circle.
+/// The position of a twist relative to its bounds, the short way around the circle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Standing {
     /// The twist less the lower bound.
@@ -83,12 +85,12 @@ pub(super) struct Standing {
     pub(super) margin: f64,
 }
 
-/// Measures a twist against bounds: both numbers are negative nowhere at once.
+/// Measures a twist against bounds; `above_lower` and `below_upper` are never both negative.
 #[inline]
 pub(super) fn standing(twist: f64, [lower, upper]: [f64; 2]) -> Standing {
     let (middle, half) = (0.5 * (lower + upper), 0.5 * (upper - lower));
     let mut off = twist - middle;
-    // Both are within a full turn of zero, so two turns are enough.
+    // |twist| ≤ π and |middle| ≤ 2π, so the difference is within 3π: at most two turns are removed.
     for _ in 0..2 {
         off -= if off > PI { TAU } else { 0.0 };
         off += if off <= -PI { TAU } else { 0.0 };
@@ -103,7 +105,7 @@ pub(super) struct TwistBounds {
     pub(super) at_rest: [f64; 2],
     /// At the start of each edge.
     pub(super) at_points: Vec<[f64; 2]>,
-    /// What is inside all of them.
+    /// The intersection of all bounds; empty (lower above upper) if it is not used.
     core: [f64; 2],
 }
 
@@ -117,21 +119,21 @@ impl TwistBounds {
         Self { at_rest, at_points, core }
     }
 
-    /// Whether a twist in (-π, π] is inside the bounds of every direction, which are means of the
-    /// given ones. Never where bounds reach beyond the half turn at which a twist jumps.
+    /// Whether a twist in (-π, π] is inside the bounds of every direction, which are convex
+    /// combinations of the given ones. Always false if bounds extend to ±π, where the twist wraps.
     #[inline]
     pub(super) fn always_holds(&self, twist: f64) -> bool {
         self.core[0] <= twist && twist <= self.core[1]
     }
 
-    /// The bounds for a direction of length 1, and how they grow with it: tangent vectors there.
+    /// The bounds for a direction of length 1, and their gradients, tangent at it.
     #[inline]
     pub(super) fn at(&self, boundary: &Boundary, v: Vec3) -> ([f64; 2], [Vec3; 2]) {
         let rest = boundary.rest;
         let height = v.dot(rest);
         let outward = v - rest * height;
         let sine = outward.norm();
-        // So near to rest all terms are below rounding; opposite to it nothing is determined.
+        // Near rest s ≈ 3·(θ/θ*)² is negligible; opposite to rest the bounds are undetermined.
         if sine < 1e-9 {
             let i = boundary.wedge(v);
             let bounds = if height > 0.0 { self.at_rest } else { self.at_points[i] };
@@ -140,11 +142,12 @@ impl TwistBounds {
         let i = boundary.wedge(v);
         let edge = &boundary.edges[i];
         let next = if i + 1 == self.at_points.len() { 0 } else { i + 1 };
-        // The meridian's direction at rest, and the way the azimuth grows.
+        // e, and the direction of increasing azimuth φ: de/dφ = around, d around/dφ = -e.
         let outward = outward * (1.0 / sine);
         let around = rest.cross(outward);
         let (alpha, beta) = (around.dot(edge.end), -around.dot(edge.start));
         let (alpha_rate, beta_rate) = (-outward.dot(edge.end), outward.dot(edge.start));
+        // Not 0: no edge runs along a meridian, so its ends differ in azimuth.
         let whole = alpha + beta;
         let t = (beta / whole).clamp(0.0, 1.0);
         let t_rate = (alpha * beta_rate - beta * alpha_rate) / (whole * whole);
@@ -159,6 +162,7 @@ impl TwistBounds {
         } else {
             (1.0, 0.0, 0.0)
         };
+        // dv/dθ; a change of azimuth moves v by sin θ·dφ, hence the division by `sine` below.
         let away = outward * height - rest * sine;
         let mut answer = ([0.0; 2], [Vec3::ZERO; 2]);
         for k in 0..2 {
