@@ -18,7 +18,7 @@ pub(crate) fn recording(path: &Path) -> Recording {
 
 /// The setup in a file, or the end of the program with a message.
 pub(crate) fn setup(path: &Path) -> IkSetup {
-    condyle::open::ik_setup(path).map_or_else(|error| quit(&error.to_string()), |read| read.value)
+    condyle::open::setup(path).map_or_else(|error| quit(&error.to_string()), |read| read.value)
 }
 
 /// Ends the program with a message.

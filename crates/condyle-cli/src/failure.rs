@@ -14,11 +14,6 @@ impl Failure {
     pub(crate) fn new(message: impl Into<String>) -> Self {
         Self(message.into())
     }
-
-    /// About a file.
-    pub(crate) fn about(path: &Path, error: &Error) -> Self {
-        Self(located(path, &error[0]))
-    }
 }
 
 impl fmt::Display for Failure {

@@ -1,78 +1,45 @@
-//! The formats that a motion can be written in.
+//! In which format something is written.
 
 use crate::failure::{Failure, warned};
-use clap::ValueEnum;
-use condyle::formats::{AngleUnit, Recording, csv, glb, sto};
-use condyle::{Mode, Model, Motion, open, scene};
+use clap::builder::PossibleValuesParser;
+use condyle::formats::{FORMATS, Format, Kind};
+use condyle::{Model, Motion, Recording, encode, open};
 use std::path::Path;
 
-/// The formats that a motion can be written in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum MotionFormat {
-    /// OpenSim's motion file, in degrees.
-    Mot,
-    /// OpenSim's storage file, in degrees.
-    Sto,
-    /// Comma-separated, in radians and metres.
-    Csv,
-    /// An animated scene.
-    Glb,
+/// What a motion may be written as.
+const MOTION: [Kind; 2] = [Kind::Motion, Kind::Scene];
+
+/// The names that `--to` takes for these kinds.
+pub(crate) fn names(kinds: &'static [Kind]) -> PossibleValuesParser {
+    let written = FORMATS.iter().filter(|f| f.writes.iter().any(|kind| kinds.contains(kind)));
+    PossibleValuesParser::new(written.map(|f| f.name).collect::<Vec<_>>())
 }
 
-impl MotionFormat {
-    /// The format of a path: by `--to`, else by its ending.
-    pub(crate) fn of(path: &Path, to: Option<Self>) -> Result<Self, Failure> {
-        if let Some(to) = to {
-            return Ok(to);
-        }
-        match open::ending(path).as_str() {
-            "mot" => Ok(Self::Mot),
-            "sto" => Ok(Self::Sto),
-            "csv" => Ok(Self::Csv),
-            "glb" => Ok(Self::Glb),
-            _ if path == Path::new("-") => Ok(Self::Mot),
-            _ => Err(Failure::new(format!(
-                "{}: the ending names no format for a motion (known are .mot, .sto, .csv, .glb; or \
-                 give --to)",
-                path.display()
-            ))),
-        }
-    }
+/// The names that `--to` takes for motions.
+pub(crate) fn motions() -> PossibleValuesParser {
+    names(&MOTION)
+}
 
-    /// The ending of its files, without the dot.
-    pub(crate) fn ending(self) -> &'static str {
-        match self {
-            Self::Mot => "mot",
-            Self::Sto => "sto",
-            Self::Csv => "csv",
-            Self::Glb => "glb",
-        }
-    }
+/// The format of a motion: by `--to`, else by the ending of the path.
+pub(crate) fn of_motion(path: &Path, to: Option<&str>) -> Result<&'static Format, Failure> {
+    let by_ending = if path == Path::new("-") { "mot".to_owned() } else { open::ending(path) };
+    let found = Format::of_ending(to.unwrap_or(&by_ending));
+    found.filter(|f| f.writes.iter().any(|kind| MOTION.contains(kind))).ok_or_else(|| {
+        let known = MOTION.map(Format::endings_that_write).join(", ");
+        Failure::new(format!(
+            "{}: the ending names no format for a motion (known are {known}; or give --to)",
+            path.display()
+        ))
+    })
+}
 
-    /// A motion in this format.
-    pub(crate) fn encode(
-        self,
-        model: &Model,
-        motion: &Motion,
-        name: &str,
-        markers: Option<(&Recording, &[usize])>,
-    ) -> Result<Vec<u8>, Failure> {
-        let fail = |error: condyle::formats::Error| Failure::new(error.to_string());
-        match self {
-            Self::Mot | Self::Sto => {
-                Ok(sto::write(&motion.to_table(model, name)).map_err(fail)?.into_bytes())
-            }
-            Self::Csv => {
-                let mut table = motion.to_table(model, name);
-                // A table for programs: the units of the library.
-                table.values = motion.frames.concat();
-                table.angle_unit = AngleUnit::Radians;
-                Ok(csv::write(&table).map_err(fail)?.into_bytes())
-            }
-            Self::Glb => {
-                let baked = scene::baked(model, motion, Mode::Open, markers);
-                glb::write(&warned(Path::new(name), baked)).map_err(fail)
-            }
-        }
-    }
+/// A motion in a format.
+pub(crate) fn encoded(
+    format: &Format,
+    model: &Model,
+    motion: &Motion,
+    name: &str,
+    markers: Option<(&Recording, &[usize])>,
+) -> Result<Vec<u8>, Failure> {
+    Ok(warned(Path::new(name), encode::motion(format, model, motion, name, markers)?))
 }

@@ -18,6 +18,7 @@
 pub mod csv;
 
 pub mod document;
+mod format;
 pub mod glb;
 pub mod opensim;
 pub mod sto;
@@ -27,4 +28,5 @@ pub mod xml;
 
 pub use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Subject, nearest};
 pub use condyle_motion::{AngleUnit, Gap, LengthUnit, Observed, Recording, Table};
+pub use format::{Content, FORMATS, Format, Id, Include, Kind};
 pub use xml::{Element, XmlDocument};

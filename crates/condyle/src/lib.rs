@@ -49,6 +49,7 @@
 //! Files are opened by [`open`], models that come along are in [`shipped`], motions are tied to a
 //! model by [`motion`], animated scenes made by [`scene`]. The `condyle` command is these calls and a printer.
 
+pub mod encode;
 pub mod matching;
 pub mod open;
 pub mod scaling;

@@ -1,12 +1,12 @@
 //! Files by path, with errors and warnings that carry the path.
 
 use crate::shipped;
-use condyle_diagnostics::{Diagnostic, Error, Place, Read, nearest};
-use condyle_formats::document::{self, Document};
-use condyle_formats::opensim::{model as osim, setup};
-use condyle_formats::{csv, sto, trc};
+use condyle_diagnostics::{Diagnostic, Error, Read, nearest};
+use condyle_formats::opensim::setup::{IkSetup, IkTasks};
+use condyle_formats::text::utf8;
+use condyle_formats::{Content, FORMATS, Format, Id, Kind};
 use condyle_model::Model;
-use condyle_motion::{Recording, Table};
+use condyle_motion::{Motion, Recording, Table};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -32,12 +32,10 @@ pub enum Cause {
         /// The text, of a document that people write.
         text: Option<String>,
     },
-    /// Its ending names no format that fits.
+    /// Neither its ending nor its content is of a format that can hold what was wanted.
     Format {
-        /// What was wanted, such as "a model".
-        wanted: &'static str,
-        /// The endings that would do.
-        known: &'static str,
+        /// What was wanted; `None` for anything that can be read.
+        wanted: Option<Kind>,
     },
     /// It is no file, and a word that might be the name of a shipped model, but none has it.
     Unknown,
@@ -59,8 +57,21 @@ impl fmt::Display for OpenError {
                 let lines: Vec<String> = error.iter().map(|e| located(&self.path, e)).collect();
                 f.write_str(&lines.join("\n"))
             }
-            Cause::Format { wanted, known } => {
-                write!(f, "{path}: the ending names no format for {wanted} (known are {known})")
+            Cause::Format { wanted: Some(kind) } => write!(
+                f,
+                "{path}: the ending names no format for {} (known are {})",
+                kind.name(),
+                Format::endings_that_read(*kind)
+            ),
+            Cause::Format { wanted: None } => {
+                let known = FORMATS.iter().filter(|format| !format.reads.is_empty());
+                let known: Vec<String> =
+                    known.flat_map(|format| format.endings).map(|e| format!(".{e}")).collect();
+                write!(
+                    f,
+                    "{path}: the ending names no format that can be read (known are {})",
+                    known.join(", ")
+                )
             }
             Cause::Unknown => {
                 let near = self.path.to_str().and_then(|name| nearest(name, shipped::names()));
@@ -92,27 +103,19 @@ pub fn located(path: &Path, said: &Diagnostic) -> String {
 /// The largest file that is read, in bytes.
 const LARGEST: u64 = 1 << 30;
 
+fn failed(path: &Path, cause: Cause) -> OpenError {
+    OpenError { path: path.to_owned(), cause }
+}
+
 fn bytes(path: &Path) -> Result<Vec<u8>, OpenError> {
-    let fail = |error| OpenError { path: path.to_owned(), cause: Cause::Io(error) };
+    let fail = |error| failed(path, Cause::Io(error));
     let size = std::fs::metadata(path).map_err(fail)?.len();
     if size > LARGEST {
         let error = Error::new("file/size", format!("the file has {size} bytes"))
             .with_help(format!("at most {LARGEST} are read"));
-        return Err(OpenError {
-            path: path.to_owned(),
-            cause: Cause::Content { error, text: None },
-        });
+        return Err(failed(path, Cause::Content { error, text: None }));
     }
     std::fs::read(path).map_err(fail)
-}
-
-fn read_with<T>(
-    path: &Path,
-    reader: impl FnOnce(&[u8]) -> Result<Read<T>, Error>,
-) -> Result<Read<T>, OpenError> {
-    let content =
-        |error| OpenError { path: path.to_owned(), cause: Cause::Content { error, text: None } };
-    reader(&bytes(path)?).map_err(content)
 }
 
 /// The ending of a path in lower case, without its dot.
@@ -120,103 +123,130 @@ pub fn ending(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
-fn wrong<T>(path: &Path, wanted: &'static str, known: &'static str) -> Result<T, OpenError> {
-    Err(OpenError { path: path.to_owned(), cause: Cause::Format { wanted, known } })
-}
-
-/// Opens a model of any format. Where there is no such file, the name of a [`shipped`] model does.
+/// Opens a file of any format, by its ending or else by its content. Where there is no such file,
+/// the name of a [`shipped`] model does. A setup comes with its tasks, if those have a file of their
+/// own.
 ///
 /// # Errors
-/// [`OpenError`] with the path, and the line where there is one.
-pub fn model(path: &Path) -> Result<Read<Model>, OpenError> {
-    match ending(path).as_str() {
-        "" if shipped::asked_for(path).is_some() => {
-            Ok(document(path)?.map(|document| document.model))
-        }
-        "osim" | "xml" => read_with(path, osim::read),
-        "toml" => Ok(document(path)?.map(|document| document.model)),
-        _ => wrong(path, "a model", ".osim, .toml"),
+/// [`OpenError`] with the path and everything that is wrong; [`Cause::Format`] if it is of no known
+/// format, or cannot hold what is `wanted`.
+pub fn content(path: &Path, wanted: Option<Kind>) -> Result<Read<Content>, OpenError> {
+    if wanted.is_none_or(|kind| kind == Kind::Model)
+        && let Some(name) = shipped::asked_for(path)
+    {
+        return Ok(shipped::read(name)?.map(Content::Document));
     }
-}
-
-/// Opens a model document with all that it includes, from their places relative to it. Where there
-/// is no such file, the name of a [`shipped`] model does.
-///
-/// # Errors
-/// [`OpenError`] with the path and everything that is wrong.
-pub fn document(path: &Path) -> Result<Read<Document>, OpenError> {
-    if let Some(name) = shipped::asked_for(path) {
-        return shipped::read(name);
+    let no_format = || failed(path, Cause::Format { wanted });
+    let fits = |format: &&Format| wanted.is_none_or(|kind| format.reads.contains(&kind));
+    let named = Format::of_ending(&ending(path));
+    if named.is_some_and(|format| !fits(&format)) {
+        return Err(no_format());
     }
-    let text = utf8(path)?;
-    let mut include = |name: &str| {
-        utf8(&beside(path, name)).map_err(|error| match error.cause {
-            Cause::Io(error) => error.to_string(),
-            Cause::Content { error, .. } => error.to_string(),
-            _ => "it is no text".to_owned(),
-        })
+    // A path without a known ending may still be a file that is recognised.
+    let bytes = match (bytes(path), named) {
+        (Ok(bytes), _) => bytes,
+        (Err(_), None) => return Err(no_format()),
+        (Err(error), Some(_)) => return Err(error),
     };
-    document::read(&text, &mut include).map_err(|error| OpenError {
-        path: path.to_owned(),
-        cause: Cause::Content { error, text: Some(text) },
-    })
+    let found = named.or_else(|| Format::of_bytes(&bytes).filter(fits));
+    let format = found.ok_or_else(no_format)?;
+    let mut include = |name: &str| included(&beside(path, name));
+    let mut read = format.read(&bytes, &mut include).map_err(|error| {
+        // Only the text of a document is shown beside its errors.
+        let document = format.id == Id::Document;
+        let text = document.then(|| utf8(&bytes).ok().map(str::to_owned)).flatten();
+        failed(path, Cause::Content { error, text })
+    })?;
+    if let Content::Setup(setup) = &mut read.value
+        && let IkTasks::File(name) = &setup.tasks
+    {
+        let tasks = content(&beside(path, name), Some(Kind::Setup))?;
+        if let Content::Tasks(set) = tasks.value {
+            read.warnings.extend(tasks.warnings);
+            setup.tasks = IkTasks::Inline(set);
+        }
+    }
+    match wanted {
+        Some(kind) if read.value.kind() != kind => {
+            let message =
+                format!("the file holds {}, not {}", read.value.kind().name(), kind.name());
+            let error = Error::new("file/content", message);
+            Err(failed(path, Cause::Content { error, text: None }))
+        }
+        _ => Ok(read),
+    }
 }
 
-/// A text in UTF-8, without the mark that some editors put in front.
-fn utf8(path: &Path) -> Result<String, OpenError> {
-    match String::from_utf8(bytes(path)?) {
-        Ok(text) => Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text)),
-        Err(error) => {
-            let valid = error.utf8_error().valid_up_to();
-            let before = &error.as_bytes()[..valid];
-            let line = before.iter().filter(|b| **b == b'\n').count() + 1;
-            let error = Error::new("toml/utf-8", "the text is not UTF-8")
-                .at(Place::at_line(line))
-                .with_help("save it as UTF-8");
-            Err(OpenError { path: path.to_owned(), cause: Cause::Content { error, text: None } })
+/// The text of a file that another includes.
+fn included(path: &Path) -> Result<String, String> {
+    let bytes = bytes(path).map_err(|error| match error.cause {
+        Cause::Io(error) => error.to_string(),
+        _ => error.to_string(),
+    })?;
+    utf8(&bytes).map(str::to_owned).map_err(|error| error.to_string())
+}
+
+/// Opens a model of any format, as [`content`] does.
+///
+/// # Errors
+/// As [`content`].
+pub fn model(path: &Path) -> Result<Read<Model>, OpenError> {
+    let read = content(path, Some(Kind::Model))?;
+    match read.value {
+        Content::Model(value) => Ok(Read { value, warnings: read.warnings }),
+        Content::Document(document) => Ok(Read { value: document.model, warnings: read.warnings }),
+        _ => Err(failed(path, Cause::Format { wanted: Some(Kind::Model) })),
+    }
+}
+
+/// Opens a marker recording of any format, as [`content`] does.
+///
+/// # Errors
+/// As [`content`].
+pub fn recording(path: &Path) -> Result<Read<Recording>, OpenError> {
+    let read = content(path, Some(Kind::Recording))?;
+    match read.value {
+        Content::Recording(value) => Ok(Read { value, warnings: read.warnings }),
+        _ => Err(failed(path, Cause::Format { wanted: Some(Kind::Recording) })),
+    }
+}
+
+/// Opens a table over time of any format, such as a motion, as [`content`] does.
+///
+/// # Errors
+/// As [`content`].
+pub fn table(path: &Path) -> Result<Read<Table>, OpenError> {
+    let read = content(path, Some(Kind::Motion))?;
+    match read.value {
+        Content::Table(value) => Ok(Read { value, warnings: read.warnings }),
+        _ => Err(failed(path, Cause::Format { wanted: Some(Kind::Motion) })),
+    }
+}
+
+/// Opens a setup of inverse kinematics, as [`content`] does.
+///
+/// # Errors
+/// As [`content`].
+pub fn setup(path: &Path) -> Result<Read<IkSetup>, OpenError> {
+    let read = content(path, Some(Kind::Setup))?;
+    match read.value {
+        Content::Setup(value) => Ok(Read { value, warnings: read.warnings }),
+        _ => {
+            let error = Error::new("setup/no-tool", "the file holds tasks without their tool");
+            let error = error.with_help("give the setup that names them");
+            Err(failed(path, Cause::Content { error, text: None }))
         }
     }
 }
 
-/// Opens a marker recording of any format.
+/// A motion of a model, from a table whose columns are named after its coordinates.
 ///
 /// # Errors
-/// [`OpenError`] with the path, and the line where there is one.
-pub fn recording(path: &Path) -> Result<Read<Recording>, OpenError> {
-    match ending(path).as_str() {
-        "trc" => read_with(path, trc::from_bytes),
-        _ => wrong(path, "a marker recording", ".trc"),
-    }
-}
-
-/// Opens a table over time, such as a motion.
-///
-/// # Errors
-/// [`OpenError`] with the path, and the line where there is one.
-pub fn table(path: &Path) -> Result<Read<Table>, OpenError> {
-    match ending(path).as_str() {
-        "mot" | "sto" => read_with(path, sto::from_bytes),
-        "csv" => read_with(path, csv::from_bytes),
-        _ => wrong(path, "a motion", ".mot, .sto, .csv"),
-    }
-}
-
-/// Opens a setup of OpenSim's inverse kinematics, with its task set if that has a file of its own.
-///
-/// # Errors
-/// [`OpenError`] with the path, and the line where there is one.
-pub fn ik_setup(path: &Path) -> Result<Read<setup::IkSetup>, OpenError> {
-    if ending(path) == "toml" {
-        return wrong(path, "a tracking setup", ".xml");
-    }
-    let mut read = read_with(path, setup::from_bytes)?;
-    if let setup::IkTasks::File(name) = &read.value.tasks {
-        let tasks_path = beside(path, name);
-        let tasks = read_with(&tasks_path, setup::tasks_from_bytes)?;
-        read.warnings.extend(tasks.warnings);
-        read.value.tasks = setup::IkTasks::Inline(tasks.value);
-    }
-    Ok(read)
+/// As [`content`].
+pub fn motion(path: &Path, model: &Model) -> Result<Read<Motion>, OpenError> {
+    let table = table(path)?;
+    let (value, warnings) = Motion::from_table(model, &table.value);
+    Ok(Read { value, warnings: [table.warnings, warnings].concat() })
 }
 
 /// A path that a file gives, from the file's own place.

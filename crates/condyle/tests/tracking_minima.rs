@@ -32,7 +32,7 @@ fn plan(data: &Path, pair: &Value) -> Plan {
     let Some(name) = pair["setup"].as_str() else { return Plan::default() };
     let path = data.join(name);
     let bytes = std::fs::read(&path).unwrap();
-    let mut plan = match open::ik_setup(&path) {
+    let mut plan = match open::setup(&path) {
         Ok(read) => Plan::from_setup(&read.value),
         Err(_) => {
             let tasks = setup::tasks_from_bytes(&bytes).unwrap().value;

@@ -4,11 +4,13 @@ pub(super) mod poses;
 
 use super::Outcome;
 use crate::failure::{Failure, warn_about, warned};
-use crate::motion_format::MotionFormat;
+use crate::motion_format as format;
 use crate::output;
 use clap::{Args, ValueEnum};
-use condyle::formats::{AngleUnit, Table, csv, document, glb, sto, trc};
-use condyle::{Mode, Model, Motion, Program, open, scene, shipped};
+use condyle::formats::document::{self, Document};
+use condyle::formats::{Content, Format, Id, Kind, trc};
+use condyle::open::Cause;
+use condyle::{AngleUnit, Mode, Model, Motion, Program, Table, encode, open, shipped};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -28,8 +30,8 @@ pub(crate) struct Convert {
     #[arg(long, value_enum, default_value_t = Limits::Off)]
     limits: Limits,
     /// The format of the output, if not by its ending.
-    #[arg(long, value_enum)]
-    to: Option<Target>,
+    #[arg(long, value_parser = format::names(&WRITTEN))]
+    to: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -38,21 +40,8 @@ enum Limits {
     On,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Target {
-    /// OpenSim's motion file.
-    Mot,
-    /// OpenSim's storage file.
-    Sto,
-    /// Comma-separated, in radians and metres where a model says which is which.
-    Csv,
-    /// A scene.
-    Glb,
-    /// A marker recording.
-    Trc,
-    /// A model document.
-    Toml,
-}
+/// What can be written.
+const WRITTEN: [Kind; 4] = [Kind::Motion, Kind::Scene, Kind::Recording, Kind::Model];
 
 /// The combinations that exist, for the message about one that does not.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
@@ -60,81 +49,70 @@ const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .cs
                      of these; a model (.osim, .toml, or a shipped one by name) to .toml or .glb; \
                      a recording (.trc) to .trc or .csv";
 
-impl Target {
-    /// By `--to`, else by the ending of the output.
-    fn of(path: &Path, to: Option<Self>) -> Result<Self, Failure> {
-        if let Some(to) = to {
-            return Ok(to);
-        }
-        if path == Path::new("-") {
-            return Err(Failure::new("standard output has no ending: name the format with --to"));
-        }
-        match open::ending(path).as_str() {
-            "mot" => Ok(Self::Mot),
-            "sto" => Ok(Self::Sto),
-            "csv" => Ok(Self::Csv),
-            "glb" => Ok(Self::Glb),
-            "trc" => Ok(Self::Trc),
-            "toml" => Ok(Self::Toml),
-            _ => Err(Failure::new(format!(
-                "{}: the ending names no format that can be written ({KNOWN})",
-                path.display()
-            ))),
-        }
-    }
-
-    /// The format of a motion, if it is one.
-    fn motion(self) -> Option<MotionFormat> {
-        match self {
-            Self::Mot => Some(MotionFormat::Mot),
-            Self::Sto => Some(MotionFormat::Sto),
-            Self::Csv => Some(MotionFormat::Csv),
-            Self::Glb => Some(MotionFormat::Glb),
-            Self::Trc | Self::Toml => None,
-        }
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Toml => "toml",
-            _ => self.motion().map_or("trc", MotionFormat::ending),
-        }
-    }
-}
-
 impl Convert {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
-        let target = Target::of(&self.output, self.to)?;
-        let ending = open::ending(&self.input);
-        // The name of a shipped model stands for its document.
-        let named = shipped::asked_for(&self.input).is_some();
-        let bytes = match if named { "toml" } else { ending.as_str() } {
-            "mot" | "sto" | "csv" | "json" if target != Target::Toml => self.motion_as(target)?,
-            "toml" if target == Target::Toml => self.document()?.into_bytes(),
-            "osim" | "xml" if target == Target::Toml => {
-                let model = warned(&self.input, open::model(&self.input)?);
-                document::write(&model).into_bytes()
+        let target = self.target()?;
+        let bytes = if open::ending(&self.input) == "json" {
+            self.motion_as(None, target)?
+        } else {
+            let read = match open::content(&self.input, None) {
+                Err(error) if matches!(error.cause, Cause::Format { .. }) => {
+                    return Err(self.unknown(target, ""));
+                }
+                read => read?,
+            };
+            match warned(&self.input, read) {
+                Content::Table(table) if target.id != Id::Document => {
+                    self.motion_as(Some(table), target)?
+                }
+                Content::Document(document) if target.id == Id::Document => {
+                    self.document(document)?.into_bytes()
+                }
+                Content::Model(model) if target.id == Id::Document => {
+                    document::write(&model).into_bytes()
+                }
+                Content::Model(model) | Content::Document(Document { model, .. })
+                    if target.id == Id::Glb =>
+                {
+                    self.scene(&model, &Motion::default())?
+                }
+                Content::Recording(recording) if target.writes.contains(&Kind::Recording) => {
+                    let name = self.output.file_name().unwrap_or_default().to_string_lossy();
+                    encode::recording(target, &recording, &name)?
+                }
+                Content::Recording(_) => {
+                    return Err(self.unknown(
+                        target,
+                        "; `condyle track MODEL TRIAL -o OUT` makes motions of recordings",
+                    ));
+                }
+                _ => return Err(self.unknown(target, "")),
             }
-            "osim" | "xml" | "toml" if target == Target::Glb => self.still()?,
-            "trc" if matches!(target, Target::Trc | Target::Csv) => self.recording_as(target)?,
-            "trc" => {
-                return Err(self.unknown(
-                    target,
-                    "; `condyle track MODEL TRIAL -o OUT` makes motions of recordings",
-                ));
-            }
-            _ => return Err(self.unknown(target, "")),
         };
         output::write(&self.output, &bytes)?;
         Ok(Outcome::Done)
     }
 
-    fn unknown(&self, target: Target, hint: &str) -> Failure {
+    /// By `--to`, else by the ending of the output.
+    fn target(&self) -> Result<&'static Format, Failure> {
+        if self.to.is_none() && self.output == Path::new("-") {
+            return Err(Failure::new("standard output has no ending: name the format with --to"));
+        }
+        let ending = self.to.clone().unwrap_or_else(|| open::ending(&self.output));
+        Format::of_ending(&ending).filter(|format| !format.writes.is_empty()).ok_or_else(|| {
+            Failure::new(format!(
+                "{}: the ending names no format that can be written ({KNOWN})",
+                self.output.display()
+            ))
+        })
+    }
+
+    fn unknown(&self, target: &Format, hint: &str) -> Failure {
         let model = if self.model.is_some() { " with --model" } else { "" };
         Failure::new(format!(
             "{}: cannot be converted to .{}{model}{hint} ({KNOWN})",
             self.input.display(),
-            target.name(),
+            target.name,
         ))
     }
 
@@ -148,70 +126,47 @@ impl Convert {
     }
 
     /// A document as it was written; a shipped one such that it can be read anywhere.
-    fn document(&self) -> Result<String, Failure> {
-        if let Some(name) = shipped::asked_for(&self.input) {
-            return Ok(shipped::standalone(name)?);
+    fn document(&self, document: Document) -> Result<String, Failure> {
+        match shipped::asked_for(&self.input) {
+            Some(name) => Ok(shipped::standalone(name)?),
+            None => Ok(document.source),
         }
-        Ok(warned(&self.input, open::document(&self.input)?).source)
     }
 
-    /// A model at rest as a scene.
-    fn still(&self) -> Result<Vec<u8>, Failure> {
-        let model = warned(&self.input, open::model(&self.input)?);
-        self.scene(&model, &Motion::default())
-    }
-
-    /// A motion as a scene of plain bones. Limits are applied here, since not all of them can be said
-    /// by coordinates.
     fn scene(&self, model: &Model, motion: &Motion) -> Result<Vec<u8>, Failure> {
-        let scene = warned(&self.output, scene::baked(model, motion, self.mode(), None));
-        glb::write(&scene).map_err(|error| Failure::new(error.to_string()))
+        Ok(warned(&self.output, encode::scene(model, motion, self.mode(), None)?))
     }
 
-    fn motion_as(&self, target: Target) -> Result<Vec<u8>, Failure> {
-        let poses = open::ending(&self.input) == "json";
+    /// A motion, or poses where there is no table.
+    fn motion_as(&self, table: Option<Table>, target: &Format) -> Result<Vec<u8>, Failure> {
         let Some(model_path) = &self.model else {
             let what = format!("{}: without --model", self.input.display());
-            if poses || matches!(target, Target::Glb | Target::Trc) {
+            let Some(table) = table.filter(|_| target.writes.contains(&Kind::Motion)) else {
+                let poses = open::ending(&self.input) == "json";
                 let from = if poses { "poses" } else { "a motion" };
-                let to = target.name();
+                let to = target.name;
                 return Err(Failure::new(format!("{what} {from} cannot become .{to} ({KNOWN})")));
-            }
+            };
             if self.limits == Limits::On {
                 return Err(Failure::new(format!("{what} there are no limits to apply")));
             }
-            let table = warned(&self.input, open::table(&self.input)?);
             return rewritten(&self.input, table, target);
         };
         let model = warned(model_path, open::model(model_path)?);
-        let mut motion = if poses {
-            poses::read(&self.input, &model)?.motion
-        } else {
-            let table = warned(&self.input, open::table(&self.input)?);
-            let (motion, warnings) = Motion::from_table(&model, &table);
-            warn_about(&self.input, &warnings);
-            motion
+        let mut motion = match table {
+            None => poses::read(&self.input, &model)?.motion,
+            Some(table) => {
+                let (motion, warnings) = Motion::from_table(&model, &table);
+                warn_about(&self.input, &warnings);
+                motion
+            }
         };
-        if target == Target::Glb {
-            return self.scene(&model, &motion);
+        match target.id {
+            Id::Glb => return self.scene(&model, &motion),
+            Id::Trc => return self.virtual_markers(&model, &motion),
+            _ => motion.make_effective(&Program::compile(&model), self.mode()),
         }
-        if target == Target::Trc {
-            return self.virtual_markers(&model, &motion);
-        }
-        motion.make_effective(&Program::compile(&model), self.mode());
-        match target.motion() {
-            Some(format) => format.encode(&model, &motion, &self.name(), None),
-            None => Err(self.unknown(target, "")),
-        }
-    }
-
-    fn recording_as(&self, target: Target) -> Result<Vec<u8>, Failure> {
-        let recording = warned(&self.input, open::recording(&self.input)?);
-        if target == Target::Csv {
-            return encoded(csv::write(&recording.to_table()));
-        }
-        let name = self.output.file_name().unwrap_or_default().to_string_lossy();
-        encoded(trc::write(&recording, &name))
+        format::encoded(target, &model, &motion, &self.name(), None)
     }
 
     /// The model's markers along a motion, as a recording in millimetres.
@@ -231,16 +186,12 @@ impl Convert {
         let recording = motion.virtual_markers(model, self.mode());
         let recording = recording.map_err(|error| Failure::new(error.to_string()))?;
         let name = self.output.file_name().unwrap_or_default().to_string_lossy();
-        encoded(trc::write(&recording, &name))
+        Ok(trc::write(&recording, &name)?.into_bytes())
     }
 }
 
-fn encoded(text: Result<String, condyle::formats::Error>) -> Result<Vec<u8>, Failure> {
-    text.map(String::into_bytes).map_err(|error| Failure::new(error.to_string()))
-}
-
 /// A table in another format, number by number, with the unit of its angles said.
-fn rewritten(path: &Path, mut table: Table, target: Target) -> Result<Vec<u8>, Failure> {
+fn rewritten(path: &Path, mut table: Table, target: &Format) -> Result<Vec<u8>, Failure> {
     if table.angle_unit == AngleUnit::Unstated {
         // A CSV without a word about it is in radians: that is how this program writes them.
         if open::ending(path) != "csv" {
@@ -252,5 +203,5 @@ fn rewritten(path: &Path, mut table: Table, target: Target) -> Result<Vec<u8>, F
         }
         table.angle_unit = AngleUnit::Radians;
     }
-    encoded(if target == Target::Csv { csv::write(&table) } else { sto::write(&table) })
+    Ok(encode::table(target, &table)?)
 }

@@ -4,7 +4,7 @@ mod figure;
 
 use super::Outcome;
 use crate::failure::Failure;
-use crate::motion_format::MotionFormat;
+use crate::motion_format;
 use crate::output;
 use crate::progress::frames_bar;
 use clap::Args;
@@ -87,14 +87,16 @@ impl Demo {
             output::write(&folder.join("recording.trc"), text.as_bytes())?;
             let labels: Vec<usize> = (0..recording.labels.len()).collect();
             let motions = [
-                ("truth.mot", &truth, MotionFormat::Mot),
-                ("recovered.mot", &robust.motion, MotionFormat::Mot),
-                ("recovered.glb", &robust.motion, MotionFormat::Glb),
+                ("truth.mot", &truth),
+                ("recovered.mot", &robust.motion),
+                ("recovered.glb", &robust.motion),
             ];
-            for (name, motion, format) in motions {
+            for (name, motion) in motions {
+                let path = folder.join(name);
+                let format = motion_format::of_motion(&path, None)?;
                 let markers = Some((&recording, labels.as_slice()));
-                let bytes = format.encode(&model, motion, "demo", markers)?;
-                output::write(&folder.join(name), &bytes)?;
+                let bytes = motion_format::encoded(format, &model, motion, "demo", markers)?;
+                output::write(&path, &bytes)?;
             }
             if !self.json {
                 let folder = folder.display();

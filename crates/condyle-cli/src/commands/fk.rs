@@ -2,7 +2,7 @@
 
 use super::Outcome;
 use super::convert::poses::{self, Poses};
-use crate::failure::{Failure, warn_about, warned};
+use crate::failure::{Failure, warned};
 use crate::output;
 use clap::{Args, ValueEnum};
 use condyle::{Mode, Model, Motion, Pose, Program, open};
@@ -87,9 +87,7 @@ impl Fk {
 
     fn requests(&self, model: &Model) -> Result<Poses, Failure> {
         if let Some(path) = &self.motion {
-            let table = warned(path, open::table(path)?);
-            let (motion, warnings) = Motion::from_table(model, &table);
-            warn_about(path, &warnings);
+            let motion = warned(path, open::motion(path, model)?);
             return Ok(Poses { motion, named: vec![] });
         }
         let Some(path) = &self.pose else {

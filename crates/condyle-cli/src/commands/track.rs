@@ -2,7 +2,7 @@
 
 use super::Outcome;
 use crate::failure::{Failure, warn_about, warned};
-use crate::motion_format::MotionFormat;
+use crate::motion_format;
 use crate::output;
 use crate::progress::frames_bar;
 use clap::{Args, ValueEnum};
@@ -26,8 +26,8 @@ pub(crate) struct Track {
     #[arg(short, long)]
     output: Option<PathBuf>,
     /// The format of the motion, if not by the ending.
-    #[arg(long, value_enum)]
-    to: Option<MotionFormat>,
+    #[arg(long, value_parser = motion_format::motions())]
+    to: Option<String>,
     /// Marker errors as a table: time, marker, error in metres.
     #[arg(long, value_name = "E.csv")]
     errors: Option<PathBuf>,
@@ -102,7 +102,7 @@ impl Track {
     fn plan(&self) -> Result<Plan, Failure> {
         let mut plan = Plan::default();
         if let Some(path) = &self.setup {
-            let setup = warned(path, open::ik_setup(path)?);
+            let setup = warned(path, open::setup(path)?);
             plan = Plan::from_setup(&setup);
             if let Some(name) = &setup.coordinate_file
                 && plan.coordinates.iter().any(|(_, _, t)| {
@@ -137,15 +137,13 @@ impl Track {
     ) -> Result<(), Failure> {
         let Some(path) = &self.output else { return Ok(()) };
         let folder = is_folder(path);
-        let format = if folder {
-            self.to.unwrap_or(MotionFormat::Mot)
-        } else {
-            MotionFormat::of(path, self.to)?
-        };
+        // A folder's ending is no format's.
+        let place = if folder { Path::new("-") } else { path };
+        let format = motion_format::of_motion(place, self.to.as_deref())?;
         let name = trial.file_stem().unwrap_or_default().to_string_lossy();
         let markers = Some((recording, tracking.labels.as_slice()));
-        let bytes = format.encode(model, &tracking.motion, &name, markers)?;
-        output::write(&self.for_trial(path, trial, format.ending()), &bytes)
+        let bytes = motion_format::encoded(format, model, &tracking.motion, &name, markers)?;
+        output::write(&self.for_trial(path, trial, format.name), &bytes)
     }
 }
 

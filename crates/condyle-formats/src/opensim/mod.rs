@@ -2,3 +2,31 @@
 
 pub mod model;
 pub mod setup;
+
+use crate::format::Content;
+use crate::xml::XmlDocument;
+use condyle_diagnostics::{Error, Read};
+
+/// Reads a file of OpenSim by what its elements say it is: a model, a setup of inverse kinematics, or
+/// the tasks of one.
+///
+/// # Errors
+/// What is wrong, with its place; `osim/unknown` if it is none of these.
+pub fn read(bytes: &[u8]) -> Result<Read<Content>, Error> {
+    let document = XmlDocument::from_bytes(bytes)?;
+    let root = document.value.root();
+    if model::of(root).is_some() {
+        return Ok(model::from_document(document)?.map(Content::Model));
+    }
+    if setup::tool_of(root).is_some() {
+        return Ok(setup::from_document(document)?.map(Content::Setup));
+    }
+    if setup::tasks_of(root).is_some() {
+        return Ok(setup::tasks_from_document(document)?.map(Content::Tasks));
+    }
+    let message = "the file holds no <Model>, no <InverseKinematicsTool> and no <IKTaskSet>";
+    let found = root.children().next().unwrap_or(root);
+    Err(found
+        .error("osim/unknown", message)
+        .with_help("give a model, or a setup of OpenSim's inverse kinematics"))
+}

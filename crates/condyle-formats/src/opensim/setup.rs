@@ -165,7 +165,7 @@ const PROPERTIES: [&str; 12] = [
     "time_range",
 ];
 
-fn from_document(document: Read<XmlDocument>) -> Result<Read<IkSetup>, Error> {
+pub(super) fn from_document(document: Read<XmlDocument>) -> Result<Read<IkSetup>, Error> {
     let mut warnings = Warnings::default();
     warnings.extend(document.warnings);
     let tool = tool(document.value.root(), &mut warnings)?;
@@ -207,18 +207,23 @@ fn from_document(document: Read<XmlDocument>) -> Result<Read<IkSetup>, Error> {
     Ok(Read { value: setup, warnings: warnings.finish() })
 }
 
+/// The tool's element, bare or in its document, by its name or one that differs by two letters.
+pub(super) fn tool_of(root: Element<'_>) -> Option<Element<'_>> {
+    let candidates = || std::iter::once(root).chain(root.children());
+    let misspelt = || candidates().find(|e| distance(e.name(), TOOL) <= 2);
+    candidates().find(|e| e.is(TOOL)).or_else(misspelt)
+}
+
 /// The tool itself, bare or in its document; OpenSim's own files have it misspelt.
 fn tool<'d>(root: Element<'d>, warnings: &mut Warnings) -> Result<Element<'d>, Error> {
-    let candidates = || std::iter::once(root).chain(root.children());
-    if let Some(tool) = candidates().find(|e| e.is(TOOL)) {
-        return Ok(tool);
-    }
-    if let Some(tool) = candidates().find(|e| distance(e.name(), TOOL) <= 2) {
-        warnings.push(
-            Diagnostic::warning("setup/misspelt", format!("<{}> is not known", tool.name()))
-                .at(tool.place())
-                .with_help(format!("read as <{TOOL}>")),
-        );
+    if let Some(tool) = tool_of(root) {
+        if !tool.is(TOOL) {
+            warnings.push(
+                Diagnostic::warning("setup/misspelt", format!("<{}> is not known", tool.name()))
+                    .at(tool.place())
+                    .with_help(format!("read as <{TOOL}>")),
+            );
+        }
         return Ok(tool);
     }
     let found = root.children().next().unwrap_or(root);
@@ -271,12 +276,17 @@ fn weight(element: Element<'_>, name: &str) -> Result<Option<f64>, Error> {
     }
 }
 
-fn tasks_from_document(document: Read<XmlDocument>) -> Result<Read<IkTaskSet>, Error> {
+/// The task set's element: bare, in its document, or in a setup.
+pub(super) fn tasks_of(root: Element<'_>) -> Option<Element<'_>> {
+    let set = std::iter::once(root).chain(root.children()).find(|e| e.is("IKTaskSet"));
+    set.or_else(|| root.find(&[TOOL, "IKTaskSet"]))
+}
+
+pub(super) fn tasks_from_document(document: Read<XmlDocument>) -> Result<Read<IkTaskSet>, Error> {
     let mut warnings = Warnings::default();
     warnings.extend(document.warnings);
     let root = document.value.root();
-    let set = std::iter::once(root).chain(root.children()).find(|e| e.is("IKTaskSet"));
-    let Some(set) = set.or_else(|| root.find(&[TOOL, "IKTaskSet"])) else {
+    let Some(set) = tasks_of(root) else {
         return Err(root
             .error("setup/no-tasks", format!("there is no <IKTaskSet> in {}", root.describe()))
             .with_help("this is not a set of inverse kinematics tasks"));

@@ -4,6 +4,19 @@ use std::borrow::Cow;
 
 use condyle_diagnostics::{Diagnostic, Error, Place, Read};
 
+/// The text in some bytes that must be UTF-8, without its byte order mark.
+///
+/// # Errors
+/// `text/utf-8` with the line of the first byte that is wrong.
+pub fn utf8(bytes: &[u8]) -> Result<&str, Error> {
+    std::str::from_utf8(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)).map_err(|error| {
+        let before = &bytes[..error.valid_up_to()];
+        let line = before.iter().filter(|b| **b == b'\n').count() + 1;
+        let error = Error::new("text/utf-8", "the text is not UTF-8");
+        error.at(Place::at_line(line)).with_help("save it as UTF-8")
+    })
+}
+
 /// The largest text a reader takes, in bytes (512 MiB).
 pub const MAX_TEXT_BYTES: usize = 512 << 20;
 

@@ -4,7 +4,7 @@ mod decode;
 mod line;
 mod number;
 
-pub use decode::{MAX_TEXT_BYTES, decode};
+pub use decode::{MAX_TEXT_BYTES, decode, utf8};
 pub(crate) use decode::{check_size, read_decoded};
 pub(crate) use line::{Line, column_at, last_line, lines};
 pub use number::number;

@@ -80,7 +80,7 @@ fn a_word_that_is_nothing_is_told_what_there_is() {
         "`spnie` is neither a file nor a shipped model (did you mean `spine`? shipped are arms, ";
     assert!(said.starts_with(start), "{said}");
     assert!(shipped::names().all(|name| said.contains(name)), "{said}");
-    let far = open::document(Path::new("xylophone")).expect_err("no model").to_string();
+    let far = open::model(Path::new("xylophone")).expect_err("no model").to_string();
     assert!(!far.contains("did you mean"), "{far}");
     // What has an ending or a folder is a path.
     for path in ["spine.toml", "models/spine", ""] {

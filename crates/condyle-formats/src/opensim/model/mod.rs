@@ -52,17 +52,22 @@ use frame::Frames;
 /// # Ok::<(), condyle_formats::Error>(())
 /// ```
 pub fn read(bytes: &[u8]) -> Result<Read<Model>, Error> {
-    let document = XmlDocument::from_bytes(bytes)?;
+    from_document(XmlDocument::from_bytes(bytes)?)
+}
+
+/// The model's element, bare or in its document.
+pub(super) fn of(root: Element<'_>) -> Option<Element<'_>> {
+    if root.is("Model") { Some(root) } else { root.child("Model") }
+}
+
+pub(super) fn from_document(document: Read<XmlDocument>) -> Result<Read<Model>, Error> {
     let mut warnings = Warnings::default();
     warnings.extend(document.warnings);
     let root = document.value.root();
-    let model = match root.name() {
-        "Model" => root,
-        _ => root.child("Model").ok_or_else(|| {
-            root.error("osim/no-model", format!("{} holds no <Model>", root.describe()))
-                .with_help("give an OpenSim model, not a setup or a results file")
-        })?,
-    };
+    let model = of(root).ok_or_else(|| {
+        root.error("osim/no-model", format!("{} holds no <Model>", root.describe()))
+            .with_help("give an OpenSim model, not a setup or a results file")
+    })?;
     let model = Reader::new(model, &mut warnings)?.read()?;
     Ok(Read { value: model, warnings: warnings.finish() })
 }

@@ -1,0 +1,293 @@
+//! The table of formats: by what names files go, what they hold, what is read and what is written.
+//!
+//! Who opens or writes a file asks this table; a new format is a folder, a row here, and its
+//! documentation.
+
+use crate::document::{self, Document};
+use crate::opensim::{self, setup};
+use crate::text::utf8;
+use crate::{Error, Read, Recording, Table, csv, sto, trc};
+use condyle_model::Model;
+
+/// What a file may hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A model.
+    Model,
+    /// A marker recording.
+    Recording,
+    /// A motion or another table over time.
+    Motion,
+    /// A setup of inverse kinematics, or its tasks.
+    Setup,
+    /// A scene for viewers.
+    Scene,
+}
+
+impl Kind {
+    /// Its name with an article, for messages.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Model => "a model",
+            Self::Recording => "a marker recording",
+            Self::Motion => "a motion",
+            Self::Setup => "a tracking setup",
+            Self::Scene => "a scene",
+        }
+    }
+}
+
+/// What a file was found to hold.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Content {
+    /// A model that never was text.
+    Model(Model),
+    /// A model with the text it was written as.
+    Document(Document),
+    /// A marker recording.
+    Recording(Recording),
+    /// A table over time.
+    Table(Table),
+    /// A setup of inverse kinematics.
+    Setup(setup::IkSetup),
+    /// The tasks of such a setup alone.
+    Tasks(setup::IkTaskSet),
+}
+
+impl Content {
+    /// What it is.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        match self {
+            Self::Model(_) | Self::Document(_) => Kind::Model,
+            Self::Recording(_) => Kind::Recording,
+            Self::Table(_) => Kind::Motion,
+            Self::Setup(_) | Self::Tasks(_) => Kind::Setup,
+        }
+    }
+}
+
+/// The formats, for code that treats one of them in a way of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Id {
+    /// Documents in TOML.
+    Document,
+    /// OpenSim's models and setups.
+    OpenSim,
+    /// Marker recordings.
+    Trc,
+    /// OpenSim's motions.
+    Mot,
+    /// OpenSim's storage files.
+    Sto,
+    /// Comma-separated tables.
+    Csv,
+    /// Binary glTF.
+    Glb,
+}
+
+/// The text of another file by its path as seen from the one that is read; else a sentence.
+pub type Include<'i> = dyn FnMut(&str) -> Result<String, String> + 'i;
+
+/// One format.
+#[derive(Clone, Copy, Debug)]
+pub struct Format {
+    /// Which it is.
+    pub id: Id,
+    /// Its name, which is its first ending.
+    pub name: &'static str,
+    /// What it is, for people.
+    pub title: &'static str,
+    /// The endings of its files, in lower case, without the dot.
+    pub endings: &'static [&'static str],
+    /// What is read from it.
+    pub reads: &'static [Kind],
+    /// What is written in it.
+    pub writes: &'static [Kind],
+    /// Whether bytes look like it.
+    sniff: fn(&[u8]) -> bool,
+    read: fn(&[u8], &mut Include<'_>) -> Result<Read<Content>, Error>,
+}
+
+/// All formats; of two that look alike the more particular one stands first.
+pub const FORMATS: &[Format] = &[
+    Format {
+        id: Id::Document,
+        name: "toml",
+        title: "documents that people write",
+        endings: &["toml"],
+        reads: &[Kind::Model],
+        writes: &[Kind::Model],
+        sniff: |bytes| {
+            starts(bytes, 4096).lines().any(|line| line.trim_start().starts_with("condyle ="))
+        },
+        read: |bytes, include| {
+            let read = document::read(utf8(bytes)?, include)?;
+            Ok(read.map(Content::Document))
+        },
+    },
+    Format {
+        id: Id::OpenSim,
+        name: "osim",
+        title: "OpenSim's models and setups",
+        endings: &["osim", "xml"],
+        reads: &[Kind::Model, Kind::Setup],
+        writes: &[],
+        sniff: |bytes| starts(bytes, 4096).contains("<OpenSimDocument"),
+        read: |bytes, _| opensim::read(bytes),
+    },
+    Format {
+        id: Id::Trc,
+        name: "trc",
+        title: "marker recordings of Motion Analysis",
+        endings: &["trc"],
+        reads: &[Kind::Recording],
+        writes: &[Kind::Recording],
+        sniff: |bytes| starts(bytes, 64).to_ascii_lowercase().starts_with("pathfiletype"),
+        read: |bytes, _| trc::from_bytes(bytes).map(|read| read.map(Content::Recording)),
+    },
+    Format {
+        id: Id::Mot,
+        name: "mot",
+        title: "OpenSim's motions, in degrees",
+        endings: &["mot"],
+        reads: &[Kind::Motion],
+        writes: &[Kind::Motion],
+        sniff: |bytes| starts(bytes, 1 << 16).lines().any(|line| line.trim() == "endheader"),
+        read: |bytes, _| sto::from_bytes(bytes).map(|read| read.map(Content::Table)),
+    },
+    Format {
+        id: Id::Sto,
+        name: "sto",
+        title: "OpenSim's storage files, in degrees",
+        endings: &["sto"],
+        reads: &[Kind::Motion],
+        writes: &[Kind::Motion],
+        sniff: |_| false,
+        read: |bytes, _| sto::from_bytes(bytes).map(|read| read.map(Content::Table)),
+    },
+    Format {
+        id: Id::Csv,
+        name: "csv",
+        title: "comma-separated tables, in radians and metres where a model says which is which",
+        endings: &["csv"],
+        reads: &[Kind::Motion],
+        writes: &[Kind::Motion, Kind::Recording],
+        sniff: |bytes| starts(bytes, 16).to_ascii_lowercase().starts_with("time,"),
+        read: |bytes, _| csv::from_bytes(bytes).map(|read| read.map(Content::Table)),
+    },
+    Format {
+        id: Id::Glb,
+        name: "glb",
+        title: "binary glTF, an animated scene",
+        endings: &["glb"],
+        reads: &[],
+        writes: &[Kind::Scene],
+        sniff: |bytes| bytes.starts_with(b"glTF"),
+        read: |_, _| Err(Error::new("glb/not-read", "scenes are written, not read")),
+    },
+];
+
+/// The beginning of a file as text, without a byte order mark.
+fn starts(bytes: &[u8], most: usize) -> String {
+    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(most)]);
+    text.trim_start_matches('\u{feff}').trim_start().to_owned()
+}
+
+impl Format {
+    /// The format of this ending, in any case.
+    ///
+    /// ```
+    /// use condyle_formats::{Format, Kind};
+    /// assert_eq!(Format::of_ending("TRC").map(|f| f.reads), Some(&[Kind::Recording][..]));
+    /// assert!(Format::of_ending("doc").is_none());
+    /// ```
+    #[must_use]
+    pub fn of_ending(ending: &str) -> Option<&'static Self> {
+        FORMATS.iter().find(|f| f.endings.iter().any(|known| known.eq_ignore_ascii_case(ending)))
+    }
+
+    /// The format that bytes look like.
+    ///
+    /// ```
+    /// use condyle_formats::{Format, Id};
+    /// let found = Format::of_bytes(b"PathFileType\t4\t(X/Y/Z)\ta.trc\n");
+    /// assert_eq!(found.map(|f| f.id), Some(Id::Trc));
+    /// assert!(Format::of_bytes(b"Dear Sir").is_none());
+    /// ```
+    #[must_use]
+    pub fn of_bytes(bytes: &[u8]) -> Option<&'static Self> {
+        FORMATS.iter().find(|f| (f.sniff)(bytes))
+    }
+
+    /// Reads whatever bytes of this format hold.
+    ///
+    /// # Errors
+    /// What is wrong, with its place.
+    pub fn read(&self, bytes: &[u8], include: &mut Include<'_>) -> Result<Read<Content>, Error> {
+        (self.read)(bytes, include)
+    }
+
+    /// The endings of all formats that hold this: `.mot, .sto, .csv`.
+    #[must_use]
+    pub fn endings_that_read(kind: Kind) -> String {
+        endings(|f| f.reads.contains(&kind))
+    }
+
+    /// The endings of all formats in which this is written.
+    #[must_use]
+    pub fn endings_that_write(kind: Kind) -> String {
+        endings(|f| f.writes.contains(&kind))
+    }
+}
+
+fn endings(chosen: impl Fn(&Format) -> bool) -> String {
+    let chosen = FORMATS.iter().filter(|f| chosen(f)).flat_map(|f| f.endings);
+    chosen.map(|ending| format!(".{ending}")).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_first_endings_and_no_ending_is_claimed_twice() {
+        let mut seen = std::collections::HashSet::new();
+        for format in FORMATS {
+            assert_eq!(format.name, format.endings[0]);
+            assert!(format.endings.iter().all(|ending| seen.insert(ending)), "{format:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_recognised_and_read_as_that() {
+        let recording = Recording {
+            labels: vec!["RASI".into()],
+            rate: 100.0,
+            times: vec![0.0],
+            positions: vec![[0.1, 0.9, 0.0].into()],
+            ..Recording::default()
+        };
+        let table = recording.to_table();
+        let samples = [
+            (Id::Trc, trc::write(&recording, "a.trc").unwrap()),
+            (Id::Mot, sto::write(&table).unwrap()),
+            (Id::Csv, csv::write(&table).unwrap()),
+            (Id::Document, "# x\ncondyle = 1\nkind = \"model\"\n[segment.a]\n".to_owned()),
+            (
+                Id::OpenSim,
+                "<?xml version=\"1.0\"?>\n<OpenSimDocument><Model/></OpenSimDocument>".into(),
+            ),
+        ];
+        for (id, text) in samples {
+            let format = Format::of_bytes(text.as_bytes()).unwrap();
+            assert_eq!(format.id, id, "{text}");
+            let read = format.read(text.as_bytes(), &mut |_| Err("alone".into()));
+            let read = read.unwrap_or_else(|error| panic!("{id:?}: {error}"));
+            assert!(format.reads.contains(&read.value.kind()), "{id:?}");
+        }
+    }
+}
