@@ -5,6 +5,7 @@
 
 use crate::document::{self, Document};
 use crate::opensim::{self, setup};
+use crate::poses::{self, Poses};
 use crate::text::utf8;
 use crate::{Error, Read, Recording, Table, csv, sto, trc};
 use condyle_model::Model;
@@ -18,6 +19,8 @@ pub enum Kind {
     Recording,
     /// A motion or another table over time.
     Motion,
+    /// Poses by the names of coordinates.
+    Poses,
     /// A setup of inverse kinematics, or its tasks.
     Setup,
     /// A scene for viewers.
@@ -32,6 +35,7 @@ impl Kind {
             Self::Model => "a model",
             Self::Recording => "a marker recording",
             Self::Motion => "a motion",
+            Self::Poses => "poses",
             Self::Setup => "a tracking setup",
             Self::Scene => "a scene",
         }
@@ -50,6 +54,8 @@ pub enum Content {
     Recording(Recording),
     /// A table over time.
     Table(Table),
+    /// Poses by the names of coordinates.
+    Poses(Poses),
     /// A setup of inverse kinematics.
     Setup(setup::IkSetup),
     /// The tasks of such a setup alone.
@@ -64,6 +70,7 @@ impl Content {
             Self::Model(_) | Self::Document(_) => Kind::Model,
             Self::Recording(_) => Kind::Recording,
             Self::Table(_) => Kind::Motion,
+            Self::Poses(_) => Kind::Poses,
             Self::Setup(_) | Self::Tasks(_) => Kind::Setup,
         }
     }
@@ -85,6 +92,8 @@ pub enum Id {
     Sto,
     /// Comma-separated tables.
     Csv,
+    /// Poses in JSON.
+    Poses,
     /// Binary glTF.
     Glb,
 }
@@ -178,6 +187,16 @@ pub const FORMATS: &[Format] = &[
         writes: &[Kind::Motion, Kind::Recording],
         sniff: |bytes| starts(bytes, 16).to_ascii_lowercase().starts_with("time,"),
         read: |bytes, _| csv::from_bytes(bytes).map(|read| read.map(Content::Table)),
+    },
+    Format {
+        id: Id::Poses,
+        name: "json",
+        title: "poses by the names of coordinates",
+        endings: &["json"],
+        reads: &[Kind::Poses],
+        writes: &[],
+        sniff: |bytes| starts(bytes, 1024).starts_with(['{', '[']),
+        read: |bytes, _| poses::read(bytes).map(|read| read.map(Content::Poses)),
     },
     Format {
         id: Id::Glb,
@@ -276,6 +295,7 @@ mod tests {
             (Id::Trc, trc::write(&recording, "a.trc").unwrap()),
             (Id::Mot, sto::write(&table).unwrap()),
             (Id::Csv, csv::write(&table).unwrap()),
+            (Id::Poses, "{\"flexion\": 0.5}".to_owned()),
             (Id::Document, "# x\ncondyle = 1\nkind = \"model\"\n[segment.a]\n".to_owned()),
             (
                 Id::OpenSim,

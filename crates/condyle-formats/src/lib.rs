@@ -10,6 +10,7 @@
 //! | model documents (TOML) | [`document::read`] | [`document::write`] |
 //! | TRC marker recordings | [`trc::read`] | [`trc::write`] |
 //! | STO and MOT motions | [`sto::read`] | [`sto::write`] |
+//! | poses (JSON) | [`poses::read`] | |
 //! | CSV tables | [`csv::read`] | [`csv::write`] |
 //! | OpenSim inverse kinematics setups | [`opensim::setup`] | |
 //! | GLB animated scenes | | [`glb::write`] |
@@ -21,6 +22,7 @@ pub mod document;
 mod format;
 pub mod glb;
 pub mod opensim;
+pub mod poses;
 pub mod sto;
 pub mod text;
 pub mod trc;

@@ -3,6 +3,7 @@
 use crate::shipped;
 use condyle_diagnostics::{Diagnostic, Error, Read, nearest};
 use condyle_formats::opensim::setup::{IkSetup, IkTasks};
+use condyle_formats::poses::Resolved;
 use condyle_formats::text::utf8;
 use condyle_formats::{Content, FORMATS, Format, Id, Kind};
 use condyle_model::Model;
@@ -247,6 +248,19 @@ pub fn motion(path: &Path, model: &Model) -> Result<Read<Motion>, OpenError> {
     let table = table(path)?;
     let (value, warnings) = Motion::from_table(model, &table.value);
     Ok(Read { value, warnings: [table.warnings, warnings].concat() })
+}
+
+/// Poses of a model, in JSON.
+///
+/// # Errors
+/// As [`content`]; names that the model does not have.
+pub fn poses(path: &Path, model: &Model) -> Result<Read<Resolved>, OpenError> {
+    let Read { value: Content::Poses(poses), warnings } = content(path, Some(Kind::Poses))? else {
+        return Err(failed(path, Cause::Format { wanted: Some(Kind::Poses) }));
+    };
+    let resolved = poses.resolve(model);
+    let value = resolved.map_err(|error| failed(path, Cause::Content { error, text: None }))?;
+    Ok(Read { value, warnings })
 }
 
 /// A path that a file gives, from the file's own place.

@@ -1,7 +1,5 @@
 //! `condyle convert`: a file in another format.
 
-pub(super) mod poses;
-
 use super::Outcome;
 use crate::failure::{Failure, warn_about, warned};
 use crate::motion_format as format;
@@ -52,42 +50,39 @@ const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .cs
 impl Convert {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
         let target = self.target()?;
-        let bytes = if open::ending(&self.input) == "json" {
-            self.motion_as(None, target)?
-        } else {
-            let read = match open::content(&self.input, None) {
-                Err(error) if matches!(error.cause, Cause::Format { .. }) => {
-                    return Err(self.unknown(target, ""));
-                }
-                read => read?,
-            };
-            match warned(&self.input, read) {
-                Content::Table(table) if target.id != Id::Document => {
-                    self.motion_as(Some(table), target)?
-                }
-                Content::Document(document) if target.id == Id::Document => {
-                    self.document(document)?.into_bytes()
-                }
-                Content::Model(model) if target.id == Id::Document => {
-                    document::write(&model).into_bytes()
-                }
-                Content::Model(model) | Content::Document(Document { model, .. })
-                    if target.id == Id::Glb =>
-                {
-                    self.scene(&model, &Motion::default())?
-                }
-                Content::Recording(recording) if target.writes.contains(&Kind::Recording) => {
-                    let name = self.output.file_name().unwrap_or_default().to_string_lossy();
-                    encode::recording(target, &recording, &name)?
-                }
-                Content::Recording(_) => {
-                    return Err(self.unknown(
-                        target,
-                        "; `condyle track MODEL TRIAL -o OUT` makes motions of recordings",
-                    ));
-                }
-                _ => return Err(self.unknown(target, "")),
+        let read = match open::content(&self.input, None) {
+            Err(error) if matches!(error.cause, Cause::Format { .. }) => {
+                return Err(self.unknown(target, ""));
             }
+            read => read?,
+        };
+        let bytes = match warned(&self.input, read) {
+            Content::Poses(_) if target.id != Id::Document => self.motion_as(None, target)?,
+            Content::Table(table) if target.id != Id::Document => {
+                self.motion_as(Some(table), target)?
+            }
+            Content::Document(document) if target.id == Id::Document => {
+                self.document(document)?.into_bytes()
+            }
+            Content::Model(model) if target.id == Id::Document => {
+                document::write(&model).into_bytes()
+            }
+            Content::Model(model) | Content::Document(Document { model, .. })
+                if target.id == Id::Glb =>
+            {
+                self.scene(&model, &Motion::default())?
+            }
+            Content::Recording(recording) if target.writes.contains(&Kind::Recording) => {
+                let name = self.output.file_name().unwrap_or_default().to_string_lossy();
+                encode::recording(target, &recording, &name)?
+            }
+            Content::Recording(_) => {
+                return Err(self.unknown(
+                    target,
+                    "; `condyle track MODEL TRIAL -o OUT` makes motions of recordings",
+                ));
+            }
+            _ => return Err(self.unknown(target, "")),
         };
         output::write(&self.output, &bytes)?;
         Ok(Outcome::Done)
@@ -139,10 +134,10 @@ impl Convert {
 
     /// A motion, or poses where there is no table.
     fn motion_as(&self, table: Option<Table>, target: &Format) -> Result<Vec<u8>, Failure> {
+        let poses = table.is_none();
         let Some(model_path) = &self.model else {
             let what = format!("{}: without --model", self.input.display());
             let Some(table) = table.filter(|_| target.writes.contains(&Kind::Motion)) else {
-                let poses = open::ending(&self.input) == "json";
                 let from = if poses { "poses" } else { "a motion" };
                 let to = target.name;
                 return Err(Failure::new(format!("{what} {from} cannot become .{to} ({KNOWN})")));
@@ -154,7 +149,7 @@ impl Convert {
         };
         let model = warned(model_path, open::model(model_path)?);
         let mut motion = match table {
-            None => poses::read(&self.input, &model)?.motion,
+            None => warned(&self.input, open::poses(&self.input, &model)?).motion,
             Some(table) => {
                 let (motion, warnings) = Motion::from_table(&model, &table);
                 warn_about(&self.input, &warnings);

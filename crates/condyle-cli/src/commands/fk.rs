@@ -1,10 +1,10 @@
 //! `condyle fk`: world transforms.
 
 use super::Outcome;
-use super::convert::poses::{self, Poses};
 use crate::failure::{Failure, warned};
 use crate::output;
 use clap::{Args, ValueEnum};
+use condyle::formats::poses::Resolved;
 use condyle::{Mode, Model, Motion, Pose, Program, open};
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;
@@ -85,15 +85,15 @@ impl Fk {
         Ok(Outcome::Done)
     }
 
-    fn requests(&self, model: &Model) -> Result<Poses, Failure> {
+    fn requests(&self, model: &Model) -> Result<Resolved, Failure> {
         if let Some(path) = &self.motion {
             let motion = warned(path, open::motion(path, model)?);
-            return Ok(Poses { motion, named: vec![] });
+            return Ok(Resolved { motion, named: vec![] });
         }
         let Some(path) = &self.pose else {
             let motion = Motion { times: vec![0.0], frames: vec![model.defaults()] };
-            return Ok(Poses { motion, named: vec![vec![false; model.coordinates().len()]] });
+            return Ok(Resolved { motion, named: vec![vec![false; model.coordinates().len()]] });
         };
-        poses::read(path, model)
+        Ok(warned(path, open::poses(path, model)?))
     }
 }
