@@ -3,9 +3,13 @@
 //! Who opens or writes a file asks this table; a new format is a folder, a row here, and its
 //! documentation.
 
+#[cfg(feature = "document")]
 use crate::document::{self, Document};
+#[cfg(feature = "opensim")]
 use crate::opensim::{self, setup};
+#[cfg(feature = "poses")]
 use crate::poses::{self, Poses};
+#[cfg(feature = "document")]
 use crate::text::utf8;
 use crate::{Error, Read, Recording, Table, csv, sto, trc};
 use condyle_model::Model;
@@ -49,16 +53,20 @@ pub enum Content {
     /// A model that never was text.
     Model(Model),
     /// A model with the text it was written as.
+    #[cfg(feature = "document")]
     Document(Document),
     /// A marker recording.
     Recording(Recording),
     /// A table over time.
     Table(Table),
     /// Poses by the names of coordinates.
+    #[cfg(feature = "poses")]
     Poses(Poses),
     /// A setup of inverse kinematics.
+    #[cfg(feature = "opensim")]
     Setup(setup::IkSetup),
     /// The tasks of such a setup alone.
+    #[cfg(feature = "opensim")]
     Tasks(setup::IkTaskSet),
 }
 
@@ -67,10 +75,14 @@ impl Content {
     #[must_use]
     pub fn kind(&self) -> Kind {
         match self {
-            Self::Model(_) | Self::Document(_) => Kind::Model,
+            Self::Model(_) => Kind::Model,
+            #[cfg(feature = "document")]
+            Self::Document(_) => Kind::Model,
             Self::Recording(_) => Kind::Recording,
             Self::Table(_) => Kind::Motion,
+            #[cfg(feature = "poses")]
             Self::Poses(_) => Kind::Poses,
+            #[cfg(feature = "opensim")]
             Self::Setup(_) | Self::Tasks(_) => Kind::Setup,
         }
     }
@@ -123,6 +135,7 @@ pub struct Format {
 
 /// All formats; of two that look alike the more particular one stands first.
 pub const FORMATS: &[Format] = &[
+    #[cfg(feature = "document")]
     Format {
         id: Id::Document,
         name: "toml",
@@ -138,6 +151,7 @@ pub const FORMATS: &[Format] = &[
             Ok(read.map(Content::Document))
         },
     },
+    #[cfg(feature = "opensim")]
     Format {
         id: Id::OpenSim,
         name: "osim",
@@ -188,6 +202,7 @@ pub const FORMATS: &[Format] = &[
         sniff: |bytes| starts(bytes, 16).to_ascii_lowercase().starts_with("time,"),
         read: |bytes, _| csv::from_bytes(bytes).map(|read| read.map(Content::Table)),
     },
+    #[cfg(feature = "poses")]
     Format {
         id: Id::Poses,
         name: "json",
@@ -198,6 +213,7 @@ pub const FORMATS: &[Format] = &[
         sniff: |bytes| starts(bytes, 1024).starts_with(['{', '[']),
         read: |bytes, _| poses::read(bytes).map(|read| read.map(Content::Poses)),
     },
+    #[cfg(feature = "glb")]
     Format {
         id: Id::Glb,
         name: "glb",

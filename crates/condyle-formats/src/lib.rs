@@ -5,6 +5,8 @@
 //! right. Inside, lengths are metres; a recording in millimetres is converted at the border. No
 //! input makes a reader panic, recurse, or allocate more than a small multiple of its size.
 //!
+//! Tables (TRC, STO, MOT, CSV) are always there; `document`, `glb`, `opensim` and `poses` are features.
+//!
 //! | format | read | write |
 //! | --- | --- | --- |
 //! | model documents (TOML) | [`document::read`] | [`document::write`] |
@@ -18,17 +20,23 @@
 
 pub mod csv;
 
+#[cfg(feature = "document")]
 pub mod document;
 mod format;
+#[cfg(feature = "glb")]
 pub mod glb;
+#[cfg(feature = "opensim")]
 pub mod opensim;
+#[cfg(feature = "poses")]
 pub mod poses;
 pub mod sto;
 pub mod text;
 pub mod trc;
+#[cfg(feature = "opensim")]
 pub mod xml;
 
 pub use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Subject, nearest};
 pub use condyle_motion::{AngleUnit, Gap, LengthUnit, Observed, Recording, Table};
 pub use format::{Content, FORMATS, Format, Id, Include, Kind};
+#[cfg(feature = "opensim")]
 pub use xml::{Element, XmlDocument};

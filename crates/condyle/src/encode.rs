@@ -1,9 +1,14 @@
 //! Motions, models and recordings to the bytes of a format.
 
+#[cfg(feature = "glb")]
 use crate::scene;
 use condyle_diagnostics::{Diagnostic, Error, Read};
-use condyle_formats::{Format, Id, Kind, csv, glb, sto, trc};
-use condyle_model::{Mode, Model};
+#[cfg(feature = "glb")]
+use condyle_formats::glb;
+use condyle_formats::{Format, Id, Kind, csv, sto, trc};
+#[cfg(feature = "glb")]
+use condyle_model::Mode;
+use condyle_model::Model;
 use condyle_motion::{AngleUnit, Motion, Recording, Table};
 
 /// A motion of a model: a table in degrees, a CSV in radians and metres, or a scene of plain bones in
@@ -20,7 +25,9 @@ pub fn motion(
     name: &str,
     markers: Option<(&Recording, &[usize])>,
 ) -> Result<Read<Vec<u8>>, Error> {
+    let _ = markers;
     match format.id {
+        #[cfg(feature = "glb")]
         Id::Glb => scene(model, motion, Mode::Open, markers),
         Id::Csv => {
             let mut table = motion.to_table(model, name);
@@ -38,6 +45,7 @@ pub fn motion(
 ///
 /// # Errors
 /// What the writer finds wrong.
+#[cfg(feature = "glb")]
 pub fn scene(
     model: &Model,
     motion: &Motion,

@@ -49,16 +49,21 @@
 //! Files are opened by [`open`], models that come along are in [`shipped`], motions are tied to a
 //! model by [`motion`], animated scenes made by [`scene`]. The `condyle` command is these calls and a printer.
 
+#[cfg(feature = "formats")]
 pub mod encode;
 pub mod matching;
+#[cfg(feature = "formats")]
 pub mod open;
 pub mod scaling;
+#[cfg(feature = "glb")]
 pub mod scene;
+#[cfg(feature = "formats")]
 pub mod shipped;
 pub mod tracking;
 
 pub use condyle_check as check;
 pub use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Subject};
+#[cfg(feature = "formats")]
 pub use condyle_formats as formats;
 pub use condyle_math as math;
 pub use condyle_model::{

@@ -2,7 +2,9 @@
 
 use crate::shipped;
 use condyle_diagnostics::{Diagnostic, Error, Read, nearest};
+#[cfg(feature = "opensim")]
 use condyle_formats::opensim::setup::{IkSetup, IkTasks};
+#[cfg(feature = "poses")]
 use condyle_formats::poses::Resolved;
 use condyle_formats::text::utf8;
 use condyle_formats::{Content, FORMATS, Format, Id, Kind};
@@ -132,6 +134,7 @@ pub fn ending(path: &Path) -> String {
 /// [`OpenError`] with the path and everything that is wrong; [`Cause::Format`] if it is of no known
 /// format, or cannot hold what is `wanted`.
 pub fn content(path: &Path, wanted: Option<Kind>) -> Result<Read<Content>, OpenError> {
+    #[cfg(feature = "document")]
     if wanted.is_none_or(|kind| kind == Kind::Model)
         && let Some(name) = shipped::asked_for(path)
     {
@@ -152,21 +155,14 @@ pub fn content(path: &Path, wanted: Option<Kind>) -> Result<Read<Content>, OpenE
     let found = named.or_else(|| Format::of_bytes(&bytes).filter(fits));
     let format = found.ok_or_else(no_format)?;
     let mut include = |name: &str| included(&beside(path, name));
-    let mut read = format.read(&bytes, &mut include).map_err(|error| {
+    let read = format.read(&bytes, &mut include).map_err(|error| {
         // Only the text of a document is shown beside its errors.
         let document = format.id == Id::Document;
         let text = document.then(|| utf8(&bytes).ok().map(str::to_owned)).flatten();
         failed(path, Cause::Content { error, text })
     })?;
-    if let Content::Setup(setup) = &mut read.value
-        && let IkTasks::File(name) = &setup.tasks
-    {
-        let tasks = content(&beside(path, name), Some(Kind::Setup))?;
-        if let Content::Tasks(set) = tasks.value {
-            read.warnings.extend(tasks.warnings);
-            setup.tasks = IkTasks::Inline(set);
-        }
-    }
+    #[cfg(feature = "opensim")]
+    let read = with_tasks(path, read)?;
     match wanted {
         Some(kind) if read.value.kind() != kind => {
             let message =
@@ -176,6 +172,21 @@ pub fn content(path: &Path, wanted: Option<Kind>) -> Result<Read<Content>, OpenE
         }
         _ => Ok(read),
     }
+}
+
+/// A setup with the tasks that have a file of their own.
+#[cfg(feature = "opensim")]
+fn with_tasks(path: &Path, mut read: Read<Content>) -> Result<Read<Content>, OpenError> {
+    if let Content::Setup(setup) = &mut read.value
+        && let IkTasks::File(name) = &setup.tasks
+    {
+        let tasks = content(&beside(path, name), Some(Kind::Setup))?;
+        if let Content::Tasks(set) = tasks.value {
+            read.warnings.extend(tasks.warnings);
+            setup.tasks = IkTasks::Inline(set);
+        }
+    }
+    Ok(read)
 }
 
 /// The text of a file that another includes.
@@ -195,6 +206,7 @@ pub fn model(path: &Path) -> Result<Read<Model>, OpenError> {
     let read = content(path, Some(Kind::Model))?;
     match read.value {
         Content::Model(value) => Ok(Read { value, warnings: read.warnings }),
+        #[cfg(feature = "document")]
         Content::Document(document) => Ok(Read { value: document.model, warnings: read.warnings }),
         _ => Err(failed(path, Cause::Format { wanted: Some(Kind::Model) })),
     }
@@ -228,6 +240,7 @@ pub fn table(path: &Path) -> Result<Read<Table>, OpenError> {
 ///
 /// # Errors
 /// As [`content`].
+#[cfg(feature = "opensim")]
 pub fn setup(path: &Path) -> Result<Read<IkSetup>, OpenError> {
     let read = content(path, Some(Kind::Setup))?;
     match read.value {
@@ -254,6 +267,7 @@ pub fn motion(path: &Path, model: &Model) -> Result<Read<Motion>, OpenError> {
 ///
 /// # Errors
 /// As [`content`]; names that the model does not have.
+#[cfg(feature = "poses")]
 pub fn poses(path: &Path, model: &Model) -> Result<Read<Resolved>, OpenError> {
     let Read { value: Content::Poses(poses), warnings } = content(path, Some(Kind::Poses))? else {
         return Err(failed(path, Cause::Format { wanted: Some(Kind::Poses) }));

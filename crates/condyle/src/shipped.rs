@@ -13,12 +13,17 @@
 //! assert!(spine.find_segment("skull").is_ok());
 //! ```
 
+#[cfg(feature = "document")]
 use crate::open::{Cause, OpenError};
-use condyle_formats::Read;
-use condyle_formats::document::{self, Document};
+#[cfg(feature = "document")]
+use condyle_formats::{
+    Read,
+    document::{self, Document},
+};
 use std::path::Path;
 
 /// Name and text of every shipped model, by name.
+#[cfg(feature = "document")]
 const MODELS: &[(&str, &str)] = &[
     ("arms", include_str!("../models/arms.toml")),
     ("human", include_str!("../models/human.toml")),
@@ -32,7 +37,12 @@ const MODELS: &[(&str, &str)] = &[
     ("spine-shao2003", include_str!("../models/spine-shao2003.toml")),
 ];
 
+/// Without a reader of documents there are none.
+#[cfg(not(feature = "document"))]
+const MODELS: &[(&str, &str)] = &[];
+
 /// Texts that models include and that are none alone, by the path that is included.
+#[cfg(feature = "document")]
 const PARTS: &[(&str, &str)] =
     &[("parts/human-markers.toml", include_str!("../models/parts/human-markers.toml"))];
 
@@ -51,6 +61,7 @@ pub fn text(name: &str) -> Option<&'static str> {
 ///
 /// # Errors
 /// [`Cause::Unknown`] if there is none of that name.
+#[cfg(feature = "document")]
 pub fn read(name: &str) -> Result<Read<Document>, OpenError> {
     with(name, &mut |_| {})
 }
@@ -60,6 +71,7 @@ pub fn read(name: &str) -> Result<Read<Document>, OpenError> {
 ///
 /// # Errors
 /// [`Cause::Unknown`] if there is none of that name.
+#[cfg(feature = "document")]
 pub fn standalone(name: &str) -> Result<String, OpenError> {
     let mut parts = vec![];
     let document = with(name, &mut |file| parts.push(file.to_owned()))?.value;
@@ -73,6 +85,7 @@ pub fn standalone(name: &str) -> Result<String, OpenError> {
 }
 
 /// Reads a shipped model and names what it includes.
+#[cfg(feature = "document")]
 fn with(name: &str, note: &mut dyn FnMut(&str)) -> Result<Read<Document>, OpenError> {
     let fail = |cause| OpenError { path: name.into(), cause };
     let text = text(name).ok_or_else(|| fail(Cause::Unknown))?;
@@ -84,6 +97,7 @@ fn with(name: &str, note: &mut dyn FnMut(&str)) -> Result<Read<Document>, OpenEr
 }
 
 /// The text of an included file: another shipped model, or a part.
+#[cfg(feature = "document")]
 fn included(file: &str) -> Result<&'static str, String> {
     let part = || PARTS.iter().find(|(path, _)| *path == file).map(|(_, text)| *text);
     let model = file.strip_suffix(".toml").and_then(text);
@@ -103,5 +117,5 @@ pub fn asked_for(path: &Path) -> Option<&str> {
     let name = path.to_str()?;
     let in_words = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
     let word = !name.is_empty() && name.chars().all(in_words);
-    (word && !path.is_file()).then_some(name)
+    (word && !MODELS.is_empty() && !path.is_file()).then_some(name)
 }

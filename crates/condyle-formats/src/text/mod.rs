@@ -6,6 +6,8 @@ mod number;
 
 pub use decode::{MAX_TEXT_BYTES, decode, utf8};
 pub(crate) use decode::{check_size, read_decoded};
-pub(crate) use line::{Line, column_at, last_line, lines};
+#[cfg(feature = "opensim")]
+pub(crate) use line::column_at;
+pub(crate) use line::{Line, last_line, lines};
 pub use number::number;
 pub(crate) use number::{decimal, plain};
