@@ -1,30 +1,24 @@
 //! Running other programs.
 
+use crate::outcome::Context;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
-
-/// The root of the workspace: the folder above this package.
-pub(crate) fn root() -> PathBuf {
-    let package = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
-    package.parent().map(PathBuf::from).unwrap_or(package)
-}
-
-/// The cargo that runs this program.
-pub(crate) fn cargo() -> Command {
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    command.current_dir(root());
-    command
-}
-
-/// Runs cargo with these arguments, its output going where ours goes.
-pub(crate) fn run_cargo(arguments: &[&str]) -> Result<(), String> {
-    run(cargo().args(arguments))
-}
+use std::time::{Duration, Instant};
 
 /// Runs a command, its output going where ours goes.
-pub(crate) fn run(command: &mut Command) -> Result<(), String> {
+pub(crate) fn run(context: &Context, command: &mut Command) -> Result<(), String> {
     let shown = shown(command);
     println!("   {shown}");
+    if context.trial.is_some() {
+        let output = command.output().map_err(|error| format!("`{shown}`: {error}"))?;
+        let said = [output.stderr, output.stdout].concat();
+        return if output.status.success() {
+            Ok(())
+        } else {
+            let said = String::from_utf8_lossy(&said).into_owned();
+            Err(format!("`{shown}` ended with {}\n{said}", output.status))
+        };
+    }
     match command.status() {
         Ok(status) if status.success() => Ok(()),
         Ok(status) => Err(format!("`{shown}` ended with {status}")),
@@ -32,13 +26,40 @@ pub(crate) fn run(command: &mut Command) -> Result<(), String> {
     }
 }
 
-/// The standard output of a command.
-pub(crate) fn output(command: &mut Command) -> Result<String, String> {
+/// Runs a command that may hang, for so long at most.
+pub(crate) fn run_within(limit: Duration, command: &mut Command) -> Result<(), String> {
     let shown = shown(command);
-    let output =
-        command.stderr(Stdio::inherit()).output().map_err(|error| format!("`{shown}`: {error}"))?;
+    println!("   {shown}");
+    let start = Instant::now();
+    let mut child = command.spawn().map_err(|error| format!("`{shown}`: {error}"))?;
+    loop {
+        match child.try_wait() {
+            Ok(Some(status)) if status.success() => return Ok(()),
+            Ok(Some(status)) => return Err(format!("`{shown}` ended with {status}")),
+            Ok(None) if start.elapsed() < limit => {
+                std::thread::sleep(Duration::from_millis(50));
+            }
+            Ok(None) => {
+                // It may have ended by itself a moment ago; either way it is gone after `wait`.
+                let _ = child.kill();
+                let _ = child.wait();
+                return Err(format!("`{shown}` took more than {} s", limit.as_secs()));
+            }
+            Err(error) => return Err(format!("`{shown}`: {error}")),
+        }
+    }
+}
+
+/// The standard output of a command.
+pub(crate) fn output(context: &Context, command: &mut Command) -> Result<String, String> {
+    let shown = shown(command);
+    if context.trial.is_none() {
+        command.stderr(Stdio::inherit());
+    }
+    let output = command.output().map_err(|error| format!("`{shown}`: {error}"))?;
     if !output.status.success() {
-        return Err(format!("`{shown}` ended with {}", output.status));
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        return Err(format!("`{shown}` ended with {}\n{said}", output.status).trim_end().into());
     }
     String::from_utf8(output.stdout).map_err(|_| format!("`{shown}` did not answer with text"))
 }
@@ -54,4 +75,21 @@ fn shown(command: &Command) -> String {
     let name = program.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let arguments = command.get_args().map(|argument| argument.to_string_lossy().into_owned());
     std::iter::once(name).chain(arguments).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[cfg(unix)]
+    fn what_hangs_is_ended() {
+        let start = Instant::now();
+        let limit = Duration::from_millis(100);
+        let answer = run_within(limit, Command::new("sleep").arg("60"));
+        assert_eq!(answer, Err("`sleep 60` took more than 0 s".to_owned()));
+        assert!(start.elapsed() < Duration::from_secs(30));
+        assert_eq!(run_within(Duration::from_secs(30), &mut Command::new("true")), Ok(()));
+        assert!(run_within(Duration::from_secs(30), &mut Command::new("false")).is_err());
+    }
 }

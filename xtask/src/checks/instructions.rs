@@ -6,7 +6,7 @@
 //! library chooses its variants, so it is judged with a tolerance, and only with the same compiler.
 
 use crate::outcome::{Context, Outcome};
-use crate::tool;
+use crate::{cargo, tool};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -22,10 +22,10 @@ pub(super) fn run(context: &Context) -> Outcome {
 }
 
 fn compare(context: &Context) -> Result<Outcome, String> {
-    let program = build()?;
-    let compiler = compiler()?;
+    let program = build(context)?;
+    let compiler = compiler(context)?;
     let mut counts = BTreeMap::new();
-    for line in tool::output(Command::new(&program).arg("list"))?.lines() {
+    for line in tool::output(context, Command::new(&program).arg("list"))?.lines() {
         let known = line.split_once(' ').and_then(|(name, n)| Some((name, n.parse().ok()?)));
         let (kernel, repeats): (_, u64) =
             known.ok_or_else(|| format!("`{line}` names no kernel and its repeats"))?;
@@ -111,23 +111,16 @@ fn written(compiler: &str, counts: &BTreeMap<String, f64>) -> String {
 }
 
 /// Builds the program that runs the kernels; its path.
-fn build() -> Result<PathBuf, String> {
-    let mut command = tool::cargo();
-    command.args(["build", "--release", "--package", "condyle-benches"]);
-    command.args(["--bin", "instruction_counts", "--message-format=json-render-diagnostics"]);
-    let messages = tool::output(&mut command)?;
-    let path = messages
-        .lines()
-        .filter_map(|line| line.split_once("\"executable\":\"")?.1.split_once('"'))
-        .next_back();
-    path.map(|(path, _)| PathBuf::from(path.replace("\\\\", "\\")))
-        .ok_or_else(|| "cargo named no program".to_owned())
+fn build(context: &Context) -> Result<PathBuf, String> {
+    let arguments = ["--release", "--package", "condyle-benches", "--bin", "instruction_counts"];
+    let program = cargo::build(context, &arguments)?.pop();
+    program.map(|(_, path)| path).ok_or_else(|| "cargo named no program".to_owned())
 }
 
 /// The release and the platform of the compiler.
-fn compiler() -> Result<String, String> {
+fn compiler(context: &Context) -> Result<String, String> {
     let mut command = Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()));
-    let said = tool::output(command.arg("-vV"))?;
+    let said = tool::output(context, command.arg("-vV"))?;
     let part = |key| said.lines().find_map(|line| line.strip_prefix(key)).unwrap_or("?");
     Ok(format!("rustc {} {}", part("release: "), part("host: ")))
 }
@@ -158,6 +151,7 @@ fn count(program: &Path, kernel: &str, repeats: u64) -> Result<u64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::workspace::Workspace;
 
     #[test]
     fn what_is_written_is_read() {
@@ -173,5 +167,46 @@ mod tests {
         assert!(judge(&committed, &counts(1049.0)).is_empty());
         assert!(judge(&committed, &counts(500.0)).is_empty());
         assert_eq!(judge(&committed, &counts(1051.0)).len(), 1);
+    }
+
+    #[test]
+    fn a_kernel_without_a_count_and_a_count_without_a_kernel_are_found() {
+        let counts = |names: &[&str]| names.iter().map(|name| ((*name).to_owned(), 1.0)).collect();
+        let committed = |names| Committed { compiler: String::new(), counts: counts(names) };
+        assert!(judge(&committed(&["pose"]), &counts(&["pose"])).is_empty());
+        assert_eq!(
+            judge(&committed(&["pose", "gone"]), &counts(&["pose", "new"])),
+            [
+                "new has no committed count: --bless writes it",
+                "gone has a committed count but is no kernel"
+            ]
+        );
+    }
+
+    /// A program with one kernel that does what `work` says.
+    fn kernels(workspace: Workspace, work: &str) -> Workspace {
+        let text = format!(
+            "fn main() {{\n    let words: Vec<String> = std::env::args().skip(1).collect();\n    \
+             let [_, repeats] = &words[..] else {{ return println!(\"kernel 100\") }};\n    \
+             for n in 0..repeats.parse().unwrap() {{\n        {work}\n    }}\n}}\n"
+        );
+        workspace.file("src/bin/instruction_counts.rs", &text)
+    }
+
+    #[test]
+    fn a_kernel_that_takes_more_than_before_fails() {
+        if !tool::is_installed(&mut Command::new("valgrind")) {
+            return eprintln!("skipped: valgrind is not installed");
+        }
+        let little = "std::hint::black_box::<u64>(n);";
+        let much = "(0..1000 + n).for_each(|n| { std::hint::black_box(n); });";
+        let workspace = Workspace::of_one_crate()
+            .with_instead("Cargo.toml", "sound", "condyle-benches")
+            .file("benches/instructions.toml", "");
+        let workspace = kernels(workspace, little);
+        let blessed = run(&Context { bless: true, ..workspace.context() });
+        assert!(matches!(blessed, Outcome::Passed), "{blessed:?}");
+        let workspace = workspace.passes(run);
+        kernels(workspace, much).fails(run, "% more instructions");
     }
 }

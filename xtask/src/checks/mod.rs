@@ -5,6 +5,7 @@ mod clippy;
 mod deny;
 mod doc;
 mod fmt;
+mod fuzz;
 mod instructions;
 mod test;
 
@@ -12,8 +13,11 @@ use crate::outcome::{Context, Outcome};
 
 /// A check by name.
 pub(crate) struct Check {
+    /// What it is called on the command line.
     pub(crate) name: &'static str,
+    /// What it makes sure of.
     pub(crate) what: &'static str,
+    /// Looks.
     pub(crate) run: fn(&Context) -> Outcome,
 }
 
@@ -25,10 +29,15 @@ pub(crate) const CHECKS: &[Check] = &[
         what: "the map is true, the floors hold",
         run: architecture::run,
     },
-    Check { name: "deny", what: "licences, sources and doubles of dependencies", run: deny::run },
+    Check {
+        name: "deny",
+        what: "licences, sources, doubles and known faults of dependencies",
+        run: deny::run,
+    },
     Check { name: "clippy", what: "no warning in any target", run: clippy::run },
     Check { name: "doc", what: "the documentation builds without a warning", run: doc::run },
     Check { name: "test", what: "the README's test command", run: test::run },
+    Check { name: "fuzz", what: "the fuzz targets build and take their seeds", run: fuzz::run },
     Check {
         name: "instructions",
         what: "kernels take no more than before",
