@@ -31,12 +31,12 @@ impl Reader<'_> {
         let (first, more) = (curves.next(), curves.next());
         if let Some(more) = more {
             let message = format!("`{label}` has two curves");
-            self.sources.error(more.key.spot, "model/exclusive", message, "give one of them");
+            self.texts.error(more.key.spot, "model/exclusive", message, "give one of them");
         }
         let Some(entry) = first else {
             let message = format!("`{label}` has no curve");
             let help = "give one of: constant, linear, ends, polynomial, spline, lines";
-            self.sources.error(node.spot, "model/missing", message, help);
+            self.texts.error(node.spot, "model/missing", message, help);
             return None;
         };
         let value = &entry.node;
@@ -79,7 +79,7 @@ impl Reader<'_> {
                     _ => node.spot,
                 };
                 let help = "give pairs [x, y] with x increasing";
-                self.sources.error(spot, "model/knots", error.to_string(), help);
+                self.texts.error(spot, "model/knots", error.to_string(), help);
                 None
             }
         }
@@ -101,7 +101,7 @@ impl Reader<'_> {
         else {
             let message = format!("`{label}` has neither slopes nor a polynomial");
             let help = "give `slopes` (and `intercept`), or `dimension`, `order`, `coefficients`";
-            self.sources.error(node.spot, "model/missing", message, help);
+            self.texts.error(node.spot, "model/missing", message, help);
             return None;
         };
         let dimension = self.count(dimension, "dimension")?;
@@ -120,7 +120,7 @@ impl Reader<'_> {
                     }
                     _ => "use at most 16 variables, order 64 and a million terms".to_owned(),
                 };
-                self.sources.error(given.spot, "model/length", message, help);
+                self.texts.error(given.spot, "model/length", message, help);
                 None
             }
         }

@@ -49,7 +49,7 @@ use condyle_diagnostics::{Error, Read};
 use condyle_model::Model;
 use condyle_model::component::Registry;
 use fields::Reader;
-use source::Sources;
+use source::Texts;
 use std::collections::HashMap;
 
 /// A model document: what it says, and how it says it.
@@ -159,7 +159,7 @@ pub fn read_with(
     include: &mut dyn FnMut(&str) -> Result<String, String>,
     laws: &Registry,
 ) -> Result<Read<Document>, Error> {
-    let mut sources = Sources::default();
+    let mut sources = Texts::default();
     let model = tree::load(&mut sources, text, include).and_then(|entries| {
         let mut reader = Reader { sources: &mut sources, constants: HashMap::new(), laws };
         let draft = reader.draft(entries);

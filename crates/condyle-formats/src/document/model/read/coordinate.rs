@@ -1,13 +1,13 @@
 //! Coordinates: what they measure and where they may go.
 
-use super::super::draft::CoordinateDraft;
-use super::super::fields::{Fields, Reader};
-use super::super::keys;
-use super::super::tree::{Entry, Node, Value};
+use crate::document::model::draft::CoordinateDraft;
+use crate::document::fields::Fields;
+use crate::document::model::keys;
+use crate::document::tree::{Entry, Node, Value};
 use condyle_diagnostics::nearest;
 use condyle_model::{CoordinateKind, Range};
 
-impl Reader<'_> {
+impl ModelReader<'_> {
     /// The properties of a coordinate, on top of what is known of it.
     pub(in super::super) fn coordinate(
         &mut self,
@@ -26,7 +26,7 @@ impl Reader<'_> {
                 Some(_) => {
                     let message = format!("this coordinate is a {}", coordinate.kind.name());
                     let help = "leave `kind` away: the joint's type says it";
-                    self.sources.error(kind.spot, "model/kind", message, help);
+                    self.texts.error(kind.spot, "model/kind", message, help);
                 }
                 None => {
                     let names = kinds.map(CoordinateKind::name);
@@ -35,7 +35,7 @@ impl Reader<'_> {
                         None => format!("kinds are: {}", names.join(", ")),
                     };
                     let message = format!("unknown kind of coordinate `{}`", kind.text);
-                    self.sources.error(kind.spot, "model/kind", message, help);
+                    self.texts.error(kind.spot, "model/kind", message, help);
                 }
             }
         }
@@ -50,7 +50,7 @@ impl Reader<'_> {
                 if (length - 1.0).abs() > 1e-6 {
                     let message = format!("this quaternion has length {length}");
                     let help = "give x, y, z, w of length 1; no turn is [0, 0, 0, 1]";
-                    self.sources.error(node.spot, "model/orientation", message, help);
+                    self.texts.error(node.spot, "model/orientation", message, help);
                 }
                 coordinate.default = q;
             }
@@ -58,7 +58,7 @@ impl Reader<'_> {
         if let Some(node) = fields.get("range") {
             if orientation {
                 let message = "an orientation has no range";
-                self.sources.error(node.spot, "model/range", message, "leave it away");
+                self.texts.error(node.spot, "model/range", message, "leave it away");
             } else {
                 self.range(node, unit, &mut coordinate.range);
             }
@@ -99,7 +99,7 @@ impl Reader<'_> {
             [] => "leave it away".to_owned(),
             _ => format!("units are: {}", units.join(", ")),
         };
-        self.sources.error(name.spot, "model/unit", message, help);
+        self.texts.error(name.spot, "model/unit", message, help);
         usual
     }
 
@@ -109,7 +109,7 @@ impl Reader<'_> {
             if matches!(node.value, Value::List(_)) {
                 let message = format!("`range` has {} sides", sides.len());
                 let help = "give [lowest, highest]; a side may be \"none\"";
-                self.sources.error(node.spot, "model/length", message, help);
+                self.texts.error(node.spot, "model/length", message, help);
             }
             return;
         };

@@ -19,8 +19,8 @@ use super::draft::{
     ClosureDraft, ComponentDraft, ConditionDraft, CoordinateDraft, Draft, Holder, OutputDraft,
     SegmentDraft,
 };
-use super::law::{Held, Law};
-use super::source::{Name, Sources};
+use super::blueprint::{Held, Blueprint};
+use crate::document::texts::{Name, Texts};
 use condyle_math::function::{Function, SimmSpline};
 use condyle_math::{Affine, Mat3, Vec3};
 use condyle_model::CoordinateKind;
@@ -39,7 +39,7 @@ pub(super) struct Mirror {
 
 impl Mirror {
     /// Adds what is not written.
-    pub(super) fn complete(&self, draft: &mut Draft, sources: &mut Sources) {
+    pub(super) fn complete(&self, draft: &mut Draft, texts: &mut Texts) {
         let written = |names: &mut dyn Iterator<Item = &Name>| -> HashSet<String> {
             names.map(|n| n.text.clone()).collect()
         };
@@ -88,7 +88,7 @@ impl Mirror {
 
         let mut made = vec![];
         for component in draft.components.iter().filter(|c| news(&sets, &c.set)) {
-            if self.component(component, sources, &mut made).is_none() {
+            if self.component(component, texts, &mut made).is_none() {
                 let name = self.name(&component.name.text);
                 draft.broken.insert((self.name(&component.set), name));
             }
@@ -221,15 +221,15 @@ impl Mirror {
         }
     }
 
-    fn gliding(&self, law: &Gliding) -> Option<Gliding> {
+    fn gliding(&self, gliding: &Gliding) -> Option<Gliding> {
         let pair = |p: &ContactPair| ContactPair {
             first: self.point(p.first),
             second: self.point(p.second),
             at: p.at,
         };
-        let pairs = law.pairs().iter().map(pair).collect();
-        let pose = self.frame(law.ellipsoid_in_surface());
-        Gliding::new(pose, law.radii(), self.turning(law.axis()), pairs).ok()
+        let pairs = gliding.pairs().iter().map(pair).collect();
+        let pose = self.frame(gliding.ellipsoid_in_surface());
+        Gliding::new(pose, gliding.radii(), self.turning(gliding.axis()), pairs).ok()
     }
 
     fn condition(&self, condition: &ConditionDraft) -> ConditionDraft {
@@ -254,7 +254,7 @@ impl Mirror {
     fn component(
         &self,
         component: &ComponentDraft,
-        sources: &mut Sources,
+        texts: &mut Texts,
         made: &mut Vec<ComponentDraft>,
     ) -> Option<()> {
         let set = self.name(&component.set);
@@ -268,44 +268,44 @@ impl Mirror {
             made.push(ComponentDraft {
                 set: set.clone(),
                 name: between.clone(),
-                law: Law::Map(vec![Function::linear(slope, intercept)]),
+                blueprint: Blueprint::Map(vec![Function::linear(slope, intercept)]),
                 ports: vec![port.clone()],
             });
             *port = Name { text: escaped(&between.text), spot: between.spot };
         };
         let mut refuse = |what: &str, help: &str| {
             let message = format!("{what} `{}` cannot be mirrored", component.name.text);
-            sources.error(component.name.spot, "model/mirror", message, help);
+            texts.error(component.name.spot, "model/mirror", message, help);
             None
         };
-        let law = match &component.law {
-            Law::Scale(along) => Law::Scale(match along {
+        let blueprint = match &component.blueprint {
+            Blueprint::Scale(along) => Blueprint::Scale(match along {
                 Along::Everywhere => Along::Everywhere,
                 Along::Axis(axis) => Along::Axis(self.point(*axis)),
                 Along::Volume(axis) => Along::Volume(self.point(*axis)),
             }),
-            Law::Shear { along, across } => {
-                Law::Shear { along: self.point(*along), across: self.point(*across) }
+            Blueprint::Shear { along, across } => {
+                Blueprint::Shear { along: self.point(*along), across: self.point(*across) }
             }
-            Law::Curve { path, heading } => {
+            Blueprint::Curve { path, heading } => {
                 let heading = heading.map(|Heading { forward, up }| Heading {
                     forward: self.point(forward),
                     up: self.point(up),
                 });
-                Law::Curve { path: self.path(path), heading }
+                Blueprint::Curve { path: self.path(path), heading }
             }
-            Law::Cone(held, cone) => match self.cone(cone) {
-                Some(cone) => Law::Cone(self.held(held), cone),
+            Blueprint::Cone(held, cone) => match self.cone(cone) {
+                Some(cone) => Blueprint::Cone(self.held(held), cone),
                 None => return refuse("the cone", "write both sides out"),
             },
-            Law::Contact { segment, surface, before, law } => match self.gliding(law) {
-                Some(law) => {
+            Blueprint::Contact { segment, surface, before, gliding } => match self.gliding(gliding) {
+                Some(gliding) => {
                     let (segment, surface) = (self.renamed(segment), self.renamed(surface));
-                    Law::Contact { segment, surface, before: *before, law }
+                    Blueprint::Contact { segment, surface, before: *before, gliding }
                 }
                 None => return refuse("the contact", "write both sides out"),
             },
-            Law::Custom(custom) => {
+            Blueprint::Custom(custom) => {
                 let help = format!(
                     "nobody but its author knows what `{}` is on the other side: write both \
                      sides out",
@@ -313,16 +313,16 @@ impl Mirror {
                 );
                 return refuse("the user's law", &help);
             }
-            Law::Rotate(axis) => Law::Rotate(self.turning(*axis)),
-            Law::Pivot(axis, centre) => Law::Pivot(self.turning(*axis), self.centre(centre)),
-            Law::Compensate { segment, ancestors, weight } => Law::Compensate {
+            Blueprint::Rotate(axis) => Blueprint::Rotate(self.turning(*axis)),
+            Blueprint::Pivot(axis, centre) => Blueprint::Pivot(self.turning(*axis), self.centre(centre)),
+            Blueprint::Compensate { segment, ancestors, weight } => Blueprint::Compensate {
                 segment: self.renamed(segment),
                 ancestors: ancestors.iter().map(|a| self.renamed(a)).collect(),
                 weight: *weight,
             },
-            Law::Translate(axis) => Law::Translate(self.point(*axis)),
-            Law::Place(frame) => Law::Place(self.frame(*frame)),
-            Law::Ellipsoid(radii, axis) if ports.len() == 3 => {
+            Blueprint::Translate(axis) => Blueprint::Translate(self.point(*axis)),
+            Blueprint::Place(frame) => Blueprint::Place(self.frame(*frame)),
+            Blueprint::Ellipsoid(radii, axis) if ports.len() == 3 => {
                 // Slopes and intercepts of the three angles.
                 let [x, y, z] = match self.axis {
                     0 => [(1.0, 0.0), (-1.0, 0.0), (-1.0, 0.0)],
@@ -338,24 +338,24 @@ impl Mirror {
                 }
                 if self.axis == 2 {
                     let (surface, half) = (part("surface"), part("half_turn"));
-                    let law = Law::Ellipsoid(*radii, *axis);
+                    let blueprint = Blueprint::Ellipsoid(*radii, *axis);
                     let set = set.clone();
                     let name = surface.clone();
-                    made.push(ComponentDraft { set: set.clone(), name, law, ports });
+                    made.push(ComponentDraft { set: set.clone(), name, blueprint, ports });
                     let turn =
                         Affine::from_rotation(Mat3::from_columns(Vec3::X, -Vec3::Y, -Vec3::Z));
-                    let law = Law::Place(turn);
+                    let blueprint = Blueprint::Place(turn);
                     let name = half.clone();
-                    made.push(ComponentDraft { set, name, law, ports: vec![] });
+                    made.push(ComponentDraft { set, name, blueprint, ports: vec![] });
                     ports = [surface, half]
                         .map(|n| Name { text: escaped(&n.text), spot: n.spot })
                         .to_vec();
-                    Law::Product
+                    Blueprint::Product
                 } else {
-                    Law::Ellipsoid(*radii, *axis)
+                    Blueprint::Ellipsoid(*radii, *axis)
                 }
             }
-            Law::ConstantCurvature { neutral, length } if ports.len() == 3 => {
+            Blueprint::ConstantCurvature { neutral, length } if ports.len() == 3 => {
                 // In the order x, z, y; a turn about an axis keeps its sign if that axis is reversed.
                 let signs = match self.axis {
                     0 => [1.0, -1.0, -1.0],
@@ -372,11 +372,11 @@ impl Mirror {
                     }
                 }
                 let neutral = std::array::from_fn(|i| signs[i] * neutral[i]);
-                Law::ConstantCurvature { neutral, length: *length }
+                Blueprint::ConstantCurvature { neutral, length: *length }
             }
             other => other.clone(),
         };
-        made.push(ComponentDraft { set, name, law, ports });
+        made.push(ComponentDraft { set, name, blueprint, ports });
         Some(())
     }
 }

@@ -9,17 +9,17 @@ mod custom;
 mod shape;
 mod size;
 
-use super::draft::{CoordinateDraft, Draft, OutputDraft, SegmentDraft};
-use super::fields::{Constant, Reader};
-use super::keys;
-use super::mirror::Mirror;
-use super::source::Spot;
-use super::tree::{Entry, Node, Value};
+use crate::document::model::draft::{CoordinateDraft, Draft, OutputDraft, SegmentDraft};
+use crate::document::fields::{Fields, Reader};
+use crate::document::model::keys;
+use crate::document::model::mirror::Mirror;
+use crate::document::texts::Spot;
+use crate::document::tree::{Entry, Node, Value};
 use condyle_model::{CoordinateKind, Range, UpAxis};
 
 const FRAME: [&str; 4] = ["at", "turn", "order", "matrix"];
 
-impl Reader<'_> {
+impl ModelReader<'_> {
     /// Reads the whole tree.
     pub(super) fn draft(&mut self, entries: Vec<Entry>) -> Draft {
         let root = Node { value: Value::Table(entries), spot: Spot::default() };
@@ -33,7 +33,7 @@ impl Reader<'_> {
             Some(up) if up.text == "z" => draft.up = UpAxis::Z,
             Some(up) if up.text != "y" => {
                 let message = format!("`up` is `{}`", up.text);
-                self.sources.error(up.spot, "model/up", message, "give \"y\" or \"z\"");
+                self.texts.error(up.spot, "model/up", message, "give \"y\" or \"z\"");
             }
             _ => {}
         }
@@ -52,7 +52,7 @@ impl Reader<'_> {
         }
         draft.sort();
         if let Some(mirror) = top.get("mirror").and_then(|n| self.mirror(n)) {
-            mirror.complete(&mut draft, self.sources);
+            mirror.complete(&mut draft, self.texts);
             size::both_sides(&mirror, &mut draft);
         }
         draft
@@ -87,13 +87,13 @@ impl Reader<'_> {
         if from.text.is_empty() || from.text == to.text {
             let message = "the two ends of names are the same";
             let help = "give different ones, such as from = \"_r\", to = \"_l\"";
-            self.sources.error(from.spot, "model/mirror", message, help);
+            self.texts.error(from.spot, "model/mirror", message, help);
             return None;
         }
         let Some(axis) = ["x", "y", "z"].iter().position(|a| *a == plane.text) else {
             let message = format!("`plane` is `{}`", plane.text);
             let help = "give the axis that is reversed: \"x\", \"y\" or \"z\"";
-            self.sources.error(plane.spot, "model/mirror", message, help);
+            self.texts.error(plane.spot, "model/mirror", message, help);
             return None;
         };
         Some(Mirror { axis, from: from.text, to: to.text })

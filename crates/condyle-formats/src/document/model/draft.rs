@@ -1,7 +1,7 @@
 //! A model as it is written: numbers read, names not yet looked up.
 
-use super::law::Law;
-use super::source::{Name, Spot};
+use super::blueprint::Blueprint;
+use crate::document::texts::{Name, Spot};
 use condyle_math::function::Function;
 use condyle_math::{Affine, Vec3};
 use condyle_model::{CoordinateKind, Range, UpAxis};
@@ -47,7 +47,7 @@ pub(super) struct CoordinateDraft {
 pub(super) struct ComponentDraft {
     pub(super) set: String,
     pub(super) name: Name,
-    pub(super) law: Law,
+    pub(super) blueprint: Blueprint,
     pub(super) ports: Vec<Name>,
 }
 

@@ -1,13 +1,13 @@
 //! Components that move by a law which a program brings.
 
-use super::super::fields::{Fields, Reader};
-use super::super::law::Law;
-use super::super::tree::Value;
+use crate::document::fields::Fields;
+use crate::document::model::blueprint::Blueprint;
+use crate::document::tree::Value;
 use condyle_diagnostics::nearest;
 use condyle_model::component::Parameters;
 
-impl Reader<'_> {
-    pub(super) fn custom(&mut self, fields: &Fields<'_>) -> Option<Law> {
+impl ModelReader<'_> {
+    pub(super) fn custom(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
         let parameters = self.parameters(fields);
         let Some(node) = fields.get("law") else {
             self.missing(fields, "law", "the name of a law that the program knows");
@@ -22,7 +22,7 @@ impl Reader<'_> {
                 Some(near) => format!("did you mean \"{near}\"?"),
                 None => "register it in the program that reads this document".to_owned(),
             };
-            self.sources.error(law.spot, "model/law", message, help);
+            self.texts.error(law.spot, "model/law", message, help);
             return None;
         };
         let wanted = wanted.join(", ");
@@ -38,16 +38,16 @@ impl Reader<'_> {
             let inputs = if takes == 1 { "input" } else { "inputs" };
             let message = format!("law `{}` takes {takes} {inputs}, not {given}", law.text);
             let help = format!("connect, in this order: {wanted}");
-            self.sources.error(spot, "model/arity", message, help);
+            self.texts.error(spot, "model/arity", message, help);
             sound = false;
         }
         match self.laws.make(&law.text, parameters?, vec![]) {
-            Ok(custom) => Some(Law::Custom(custom)).filter(|_| sound),
+            Ok(custom) => Some(Blueprint::Custom(custom)).filter(|_| sound),
             Err(why) => {
                 let spot = fields.get("parameters").map_or(fields.spot, |node| node.spot);
                 let message = format!("law `{}` cannot be made: {why}", law.text);
                 let help = "give other `parameters`: numbers or lists, in metres and radians";
-                self.sources.error(spot, "model/law", message, help);
+                self.texts.error(spot, "model/law", message, help);
                 None
             }
         }

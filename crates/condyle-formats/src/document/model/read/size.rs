@@ -1,14 +1,13 @@
 //! Size groups: segments that grow together.
 
-use super::super::draft::{Draft, SizeDraft};
-use super::super::fields::Reader;
-use super::super::keys;
-use super::super::mirror::Mirror;
-use super::super::source::Name;
-use super::super::tree::Entry;
+use crate::document::model::draft::{Draft, SizeDraft};
+use crate::document::model::keys;
+use crate::document::model::mirror::Mirror;
+use crate::document::texts::Name;
+use crate::document::tree::Entry;
 use std::collections::HashSet;
 
-impl Reader<'_> {
+impl ModelReader<'_> {
     pub(super) fn size(&mut self, draft: &mut Draft, entry: &Entry) {
         let name = entry.key.clone();
         let label = format!("size.{}", name.text);

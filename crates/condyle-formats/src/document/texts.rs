@@ -39,14 +39,14 @@ struct File {
 
 /// All texts of a document and what was said about them.
 #[derive(Default)]
-pub(super) struct Sources {
+pub(super) struct Texts {
     files: Vec<File>,
     errors: Vec<Diagnostic>,
     surplus: usize,
     warnings: Vec<Diagnostic>,
 }
 
-impl Sources {
+impl Texts {
     /// Adds a text and returns its number.
     pub(super) fn add(&mut self, name: &str, text: &str, included_at: Option<Spot>) -> u32 {
         let breaks = text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i + 1);

@@ -1,14 +1,14 @@
 //! The parameters of components that have a shape: paths, ellipsoids, columns, scales and shears.
 
-use super::super::fields::{Fields, Reader};
-use super::super::keys;
-use super::super::law::Law;
-use super::super::tree::Node;
+use crate::document::fields::Fields;
+use crate::document::model::keys;
+use crate::document::model::blueprint::Blueprint;
+use crate::document::tree::Node;
 use condyle_math::Vec3;
 use condyle_math::function::SimmSpline;
 use condyle_model::component::{Along, Centre, Heading, SurfaceAxis};
 
-impl Reader<'_> {
+impl ModelReader<'_> {
     /// Where the centre of a pivot is: at one point for each interval, or on a smooth path.
     pub(super) fn centre(&mut self, fields: &Fields<'_>) -> Option<Centre> {
         if let Some(node) = fields.get("path") {
@@ -49,14 +49,14 @@ impl Reader<'_> {
             Err(_) => {
                 let message = format!("`path` has {} curves", list.len());
                 let help = format!("give three lists of [{argument}, place]: for x, y and z");
-                self.sources.error(node.spot, "model/length", message, help);
+                self.texts.error(node.spot, "model/length", message, help);
                 None
             }
         }
     }
 
     /// A path, and how a segment turns with it.
-    pub(in super::super) fn curve(&mut self, fields: &Fields<'_>) -> Option<Law> {
+    pub(in super::super) fn curve(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
         let unit = fields.get("in").map_or(Some(1.0), |n| self.unit_of(n, "in"));
         let path = match fields.get("path") {
             Some(node) => unit.and_then(|unit| self.path(node, unit, "parameter")),
@@ -78,21 +78,21 @@ impl Reader<'_> {
                 let message = format!("`{has}` stands without `{lacks}`");
                 let help = "give both: the axis that follows the curve and the one that stays up; \
                             or neither, for no turn";
-                self.sources.error(spot, "model/missing", message, help);
+                self.texts.error(spot, "model/missing", message, help);
                 return None;
             }
         };
-        Some(Law::Curve { path: path?, heading })
+        Some(Blueprint::Curve { path: path?, heading })
     }
 
-    pub(in super::super) fn ellipsoid(&mut self, fields: &Fields<'_>) -> Option<Law> {
+    pub(in super::super) fn ellipsoid(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
         let radii = self.needed(fields, "radii", "three half axes in metres");
         let words = [("opensim", SurfaceAxis::OpenSim), ("normal", SurfaceAxis::Normal)];
         let axis = self.word(fields, "surface_axis", &words);
-        Some(Law::Ellipsoid(radii?, axis?))
+        Some(Blueprint::Ellipsoid(radii?, axis?))
     }
 
-    pub(super) fn column(&mut self, fields: &Fields<'_>) -> Option<Law> {
+    pub(super) fn column(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
         let neutral = match fields.get("neutral") {
             Some(node) => {
                 let unit = self.angle_unit(node.spot);
@@ -104,11 +104,11 @@ impl Reader<'_> {
             self.missing(fields, "length", "the length of the arc in metres");
             return None;
         };
-        Some(Law::ConstantCurvature { neutral, length: self.number(length, "length")? })
+        Some(Blueprint::ConstantCurvature { neutral, length: self.number(length, "length")? })
     }
 
     /// A scale everywhere, along an axis, or along an axis with the volume kept.
-    pub(in super::super) fn scale(&mut self, fields: &Fields<'_>) -> Option<Law> {
+    pub(in super::super) fn scale(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
         let volume = self.flag(fields.get("volume"), "volume", false);
         let along = match fields.get("axis") {
             Some(node) => {
@@ -121,12 +121,12 @@ impl Reader<'_> {
             }
             None => Along::Everywhere,
         };
-        Some(Law::Scale(along))
+        Some(Blueprint::Scale(along))
     }
 
-    pub(in super::super) fn shear(&mut self, fields: &Fields<'_>) -> Option<Law> {
+    pub(in super::super) fn shear(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
         let along = self.needed(fields, "along", "the direction in which layers slide");
         let across = self.needed(fields, "across", "the direction in which layers are stacked");
-        Some(Law::Shear { along: along?, across: across? })
+        Some(Blueprint::Shear { along: along?, across: across? })
     }
 }

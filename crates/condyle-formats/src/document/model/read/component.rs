@@ -1,12 +1,12 @@
 //! Components: their parameters, and the names at their ports.
 
-use super::super::draft::{ComponentDraft, Draft};
-use super::super::fields::{Fields, Reader};
-use super::super::function::rescaled;
-use super::super::keys;
-use super::super::law::Law;
-use super::super::source::Name;
-use super::super::tree::{Entry, Node, Value};
+use crate::document::model::draft::{ComponentDraft, Draft};
+use crate::document::fields::Fields;
+use crate::document::function::rescaled;
+use crate::document::model::keys;
+use crate::document::model::blueprint::Blueprint;
+use crate::document::texts::Name;
+use crate::document::tree::{Entry, Node, Value};
 use super::FRAME;
 use condyle_diagnostics::nearest;
 use condyle_math::Vec3;
@@ -15,18 +15,18 @@ use condyle_math::function::Function;
 /// What is asked for where a direction is missing.
 pub(super) const DIRECTION: &str = "a direction such as [0, 0, 1]";
 
-impl Reader<'_> {
+impl ModelReader<'_> {
     pub(super) fn component(&mut self, draft: &mut Draft, set: &str, entry: &Entry) {
         let name = entry.key.clone();
         let label = format!("joint_set.{set}.component.{}", name.text);
         let read = self.kind_of(&label, entry).and_then(|(one, known)| {
             let kind = one.key.text.as_str();
             let fields = self.table(&one.node, name.spot, format!("{label}.{kind}"), known);
-            self.law(&fields, kind)
+            self.blueprint(&fields, kind)
         });
         match read {
-            Some((law, ports)) => {
-                draft.components.push(ComponentDraft { set: set.to_owned(), name, law, ports });
+            Some((blueprint, ports)) => {
+                draft.components.push(ComponentDraft { set: set.to_owned(), name, blueprint, ports });
             }
             // What reads it is not to blame.
             None => _ = draft.broken.insert((set.to_owned(), name.text)),
@@ -44,7 +44,7 @@ impl Reader<'_> {
             if matches!(entry.node.value, Value::Table(_)) {
                 let message = format!("[{label}] does not hold one component");
                 let help = format!("name its kind: [{label}.KIND] with {}", kinds.join(", "));
-                self.sources.error(entry.key.spot, "model/component", message, help);
+                self.texts.error(entry.key.spot, "model/component", message, help);
             }
             return None;
         };
@@ -57,25 +57,25 @@ impl Reader<'_> {
             None => format!("kinds are: {}", kinds.join(", ")),
         };
         let message = format!("unknown kind of component `{kind}`");
-        self.sources.error(one.key.spot, "model/component", message, help);
+        self.texts.error(one.key.spot, "model/component", message, help);
         None
     }
 
     /// The parameters of a component and the names at its ports.
-    fn law(&mut self, fields: &Fields<'_>, kind: &str) -> Option<(Law, Vec<Name>)> {
+    fn blueprint(&mut self, fields: &Fields<'_>, kind: &str) -> Option<(Blueprint, Vec<Name>)> {
         let names = self.ports(fields, kind);
-        let law = match kind {
-            "map" => Law::Map(self.map(fields)?),
+        let blueprint = match kind {
+            "map" => Blueprint::Map(self.map(fields)?),
             "combine" => match fields.get("function") {
-                Some(node) => Law::Combine(self.several(node, "function")?),
+                Some(node) => Blueprint::Combine(self.several(node, "function")?),
                 None => {
                     self.missing(fields, "function", "{ slopes = [...], intercept = 0 }");
                     return None;
                 }
             },
-            "rotate" => Law::Rotate(self.needed(fields, "axis", DIRECTION)?),
+            "rotate" => Blueprint::Rotate(self.needed(fields, "axis", DIRECTION)?),
             "translate" => {
-                Law::Translate(self.needed(fields, "axis", "a direction such as [0, 1, 0]")?)
+                Blueprint::Translate(self.needed(fields, "axis", "a direction such as [0, 1, 0]")?)
             }
             "depend" => self.depend(fields)?,
             "cone" => self.cone(fields)?,
@@ -83,20 +83,20 @@ impl Reader<'_> {
             "pivot" => {
                 let axis = self.needed(fields, "axis", DIRECTION);
                 let centre = self.centre(fields)?;
-                Law::Pivot(axis?, centre)
+                Blueprint::Pivot(axis?, centre)
             }
             "compensate" => self.compensate(fields)?,
-            "ball" => Law::Ball,
-            "place" => Law::Place(self.frame(fields, FRAME)),
+            "ball" => Blueprint::Ball,
+            "place" => Blueprint::Place(self.frame(fields, FRAME)),
             "ellipsoid" => self.ellipsoid(fields)?,
             "constant_curvature" => self.column(fields)?,
             "scale" => self.scale(fields)?,
             "shear" => self.shear(fields)?,
             "curve" => self.curve(fields)?,
             "custom" => self.custom(fields)?,
-            _ => Law::Product,
+            _ => Blueprint::Product,
         };
-        Some((law, names?))
+        Some((blueprint, names?))
     }
 
     /// The names at the ports of a component, in their order.
@@ -150,7 +150,7 @@ impl Reader<'_> {
         names.into_iter().collect()
     }
 
-    fn depend(&mut self, fields: &Fields<'_>) -> Option<Law> {
+    fn depend(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
         let mut bound = |key: &str| match fields.get(key) {
             Some(node) => self.function(node, key).map(Some),
             None => Some(None),
@@ -160,10 +160,10 @@ impl Reader<'_> {
             self.missing(fields, "lower", "`lower`, `upper` or both, as functions of the driver");
             return None;
         }
-        Some(Law::Depend { lower: lower?, upper: upper? })
+        Some(Blueprint::Depend { lower: lower?, upper: upper? })
     }
 
-    fn compensate(&mut self, fields: &Fields<'_>) -> Option<Law> {
+    fn compensate(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
         let (Some(segment), Some(ancestors)) = (fields.get("segment"), fields.get("ancestors"))
         else {
             self.missing(fields, "ancestors", "`segment` and the `ancestors` to be compensated");
@@ -175,7 +175,7 @@ impl Reader<'_> {
             Some(node) => self.number(node, "weight")?,
             None => 1.0,
         };
-        Some(Law::Compensate { segment: segment?, ancestors, weight })
+        Some(Blueprint::Compensate { segment: segment?, ancestors, weight })
     }
 
     pub(super) fn needed(&mut self, fields: &Fields<'_>, key: &str, wanted: &str) -> Option<Vec3> {
@@ -202,7 +202,7 @@ impl Reader<'_> {
             }
             (Some(_), Some(node)) => {
                 let message = "both `function` and `functions` are given";
-                self.sources.error(node.spot, "model/exclusive", message, "give one of them");
+                self.texts.error(node.spot, "model/exclusive", message, "give one of them");
                 return None;
             }
         };
@@ -222,7 +222,7 @@ impl Reader<'_> {
             other => {
                 let message = format!("unknown unit `{other}`");
                 let help = "units are: rad, deg, m, mm";
-                self.sources.error(name.spot, "model/unit", message, help);
+                self.texts.error(name.spot, "model/unit", message, help);
                 None
             }
         }
@@ -249,7 +249,7 @@ impl Reader<'_> {
             }
         };
         let message = format!("`{key}` is `{}`", name.text);
-        self.sources.error(name.spot, "model/word", message, help);
+        self.texts.error(name.spot, "model/word", message, help);
         None
     }
 }

@@ -1,18 +1,18 @@
 //! Joint cones: where a bone may point and how far it may turn about itself.
 
-use super::super::fields::{Fields, Reader};
-use super::super::keys;
-use super::super::law::{Held, Law};
-use super::super::source::Spot;
-use super::super::tree::{Node, Value};
+use crate::document::fields::Fields;
+use crate::document::model::keys;
+use crate::document::model::blueprint::{Held, Blueprint};
+use crate::document::texts::Spot;
+use crate::document::tree::{Node, Value};
 use condyle_math::{EulerOrder, Vec3};
 use condyle_model::limit::{Cone, ConeError, ConePoint, Projection};
 
 /// How often the number of points is doubled unless said.
 const SUBDIVISIONS: u32 = 2;
 
-impl Reader<'_> {
-    pub(super) fn cone(&mut self, fields: &Fields<'_>) -> Option<Law> {
+impl ModelReader<'_> {
+    pub(super) fn cone(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
         let held = self.held(fields);
         let rest = self.needed(fields, "rest", "the bone's long axis at rest, such as [0, -1, 0]");
         let twist = match fields.get("twist") {
@@ -28,10 +28,10 @@ impl Reader<'_> {
         let projection = self.word(fields, "projection", &words);
         let (rest, twist, subdivisions) = (rest?, twist?, subdivisions?);
         match Cone::new(rest, twist, points?, subdivisions, projection?) {
-            Ok(cone) => Some(Law::Cone(held?, cone)),
+            Ok(cone) => Some(Blueprint::Cone(held?, cone)),
             Err(error) => {
                 let (spot, message, help) = refused(fields, error);
-                self.sources.error(spot, "model/cone", message, help);
+                self.texts.error(spot, "model/cone", message, help);
                 None
             }
         }
@@ -45,7 +45,7 @@ impl Reader<'_> {
                 let Some(node) = fields.get(key) else { continue };
                 let message = format!("both `orientation` and `{key}` are given");
                 let help = "an orientation needs no axes: give it alone, or angles with theirs";
-                self.sources.error(node.spot, "model/exclusive", message, help);
+                self.texts.error(node.spot, "model/exclusive", message, help);
                 return None;
             }
             return Some(Held::Orientation);
@@ -58,7 +58,7 @@ impl Reader<'_> {
             let spot = fields.get("angles").map_or(fields.spot, |node| node.spot);
             let message = format!("`angles` has {count} names");
             let help = "give three angles, or two where the bone does not turn about itself";
-            self.sources.error(spot, "model/length", message, help);
+            self.texts.error(spot, "model/length", message, help);
             return None;
         }
         let axes = match axes {
@@ -70,7 +70,7 @@ impl Reader<'_> {
             [None, Some((_, node))] => (node.spot, self.letters(node, count)?),
             [Some(_), Some((_, node))] => {
                 let message = "both `axes` and `order` are given";
-                self.sources.error(node.spot, "model/exclusive", message, "give one of them");
+                self.texts.error(node.spot, "model/exclusive", message, "give one of them");
                 return None;
             }
             [None, None] => {
@@ -85,7 +85,7 @@ impl Reader<'_> {
             (_, list) => {
                 let message = format!("`axes` has {} directions for {count} angles", list.len());
                 let help = format!("give {count}");
-                self.sources.error(axes.0, "model/length", message, help);
+                self.texts.error(axes.0, "model/length", message, help);
                 None
             }
         }
@@ -107,7 +107,7 @@ impl Reader<'_> {
         }
         let message = format!("unknown rotation order `{}` of two angles", name.text);
         let help = "give two different ones of x, y, z, such as \"zx\"";
-        self.sources.error(name.spot, "model/order", message, help);
+        self.texts.error(name.spot, "model/order", message, help);
         None
     }
 
@@ -142,7 +142,7 @@ impl Reader<'_> {
         let [low, high] = self.some::<2>(node, "twist")?;
         if low > high {
             let message = format!("the lowest twist {low} lies above the highest {high}");
-            self.sources.error(node.spot, "model/crossing-range", message, "exchange the two");
+            self.texts.error(node.spot, "model/crossing-range", message, "exchange the two");
             return None;
         }
         Some([unit * low, unit * high])

@@ -1,13 +1,13 @@
 //! Markers, and the loops that tracking closes.
 
-use super::super::draft::{ClosureDraft, ConditionDraft, Draft, Holder, MarkerDraft};
-use super::super::fields::{Fields, Reader};
-use super::super::keys;
-use super::super::tree::{Entry, Node};
+use crate::document::model::draft::{ClosureDraft, ConditionDraft, Draft, Holder, MarkerDraft};
+use crate::document::fields::Fields;
+use crate::document::model::keys;
+use crate::document::tree::{Entry, Node};
 use super::FRAME;
 use condyle_math::{Affine, Vec3};
 
-impl Reader<'_> {
+impl ModelReader<'_> {
     pub(super) fn marker(&mut self, draft: &mut Draft, entry: &Entry) {
         let label = format!("marker.{}", entry.key.text);
         let fields = self.table(&entry.node, entry.key.spot, label, keys::MARKER);
@@ -55,7 +55,7 @@ impl Reader<'_> {
             _ => {
                 let message = format!("[{label}] does not say one condition");
                 let help = "give `points`, `points` with `distance`, `frames` or `coupling`";
-                self.sources.error(name.spot, "model/closure", message, help);
+                self.texts.error(name.spot, "model/closure", message, help);
                 None
             }
         };
@@ -69,7 +69,7 @@ impl Reader<'_> {
             [a, b] => Some([a, b]),
             list => {
                 let message = format!("`{label}` has {} entries", list.len());
-                self.sources.error(node.spot, "model/length", message, "give 2");
+                self.texts.error(node.spot, "model/length", message, "give 2");
                 None
             }
         }

@@ -1,17 +1,17 @@
 //! Contacts: a bone that is put on an ellipsoid.
 
-use super::super::fields::{Fields, Reader};
-use super::super::keys;
-use super::super::law::Law;
-use super::super::source::Name;
-use super::super::tree::{Node, Value};
+use crate::document::fields::Fields;
+use crate::document::model::keys;
+use crate::document::model::blueprint::Blueprint;
+use crate::document::texts::Name;
+use crate::document::tree::{Node, Value};
 use super::FRAME;
 use super::component::DIRECTION;
 use condyle_math::{Affine, Vec3};
 use condyle_model::component::{ContactPair, Gliding};
 
-impl Reader<'_> {
-    pub(super) fn contact(&mut self, fields: &Fields<'_>) -> Option<Law> {
+impl ModelReader<'_> {
+    pub(super) fn contact(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
         let mut named = |key: &str, wanted: &str| -> Option<Name> {
             match fields.get(key) {
                 Some(node) => self.text(node, key),
@@ -57,11 +57,11 @@ impl Reader<'_> {
         for (spot, why) in &wrong {
             let said = why.to_string();
             let (message, help) = said.split_once(": ").unwrap_or((&said, "give other numbers"));
-            self.sources.error(*spot, "model/contact", message, help);
+            self.texts.error(*spot, "model/contact", message, help);
         }
-        let law = Gliding::new(pose?, radii?, axis?, pairs?.1).ok()?;
+        let gliding = Gliding::new(pose?, radii?, axis?, pairs?.1).ok()?;
         let before = fields.get("before").is_some();
-        Some(Law::Contact { segment: segment?, surface: surface?, before, law })
+        Some(Blueprint::Contact { segment: segment?, surface: surface?, before, gliding })
     }
 
     /// A frame that neither stretches nor shears.
@@ -76,7 +76,7 @@ impl Reader<'_> {
         // A matrix with the wrong number of rows was named already and left nothing behind.
         let spot = fields.get("matrix").map_or(fields.spot, |node| node.spot);
         let help = "give rows of length 1 at right angles, or three angles as `turn`";
-        self.sources.error(spot, "model/rotation", "`matrix` is not a rotation", help);
+        self.texts.error(spot, "model/rotation", "`matrix` is not a rotation", help);
         None
     }
 
@@ -122,7 +122,7 @@ impl Reader<'_> {
             ref list => {
                 let message = format!("`at` has {} numbers", list.len());
                 let help = "give one for each driver, at most two";
-                self.sources.error(node.spot, "model/length", message, help);
+                self.texts.error(node.spot, "model/length", message, help);
                 None
             }
         }
@@ -139,7 +139,7 @@ impl Reader<'_> {
             _ => {
                 let message = format!("`in` has {} units", list.len());
                 let help = "give one for both drivers, or a list of two";
-                self.sources.error(node.spot, "model/length", message, help);
+                self.texts.error(node.spot, "model/length", message, help);
                 [1.0; 2]
             }
         }

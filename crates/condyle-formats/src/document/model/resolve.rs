@@ -1,8 +1,8 @@
 //! Names to positions, and the draft to a checked model.
 
 use super::draft::{ConditionDraft, Draft, Holder};
-use super::law::Law;
-use super::source::{Name, Sources, Spot};
+use super::blueprint::Blueprint;
+use crate::document::texts::{Name, Texts, Spot};
 use condyle_diagnostics::{Diagnostic, Read, Severity, Subject, did_you_mean, nearest};
 use condyle_math::{Affine, Vec3};
 use condyle_model::component::{Component, Place, PortType, Product};
@@ -24,10 +24,10 @@ struct Meaning {
     outputs: usize,
 }
 
-/// Builds the model; errors go to `sources`.
-pub(super) fn build(draft: Draft, sources: &mut Sources) -> Option<Model> {
+/// Builds the model; errors go to `texts`.
+pub(super) fn build(draft: Draft, texts: &mut Texts) -> Option<Model> {
     let mut resolver = Resolver {
-        sources,
+        texts,
         builder: ModelBuilder::new(draft.name.as_deref().unwrap_or("model")),
         segments: HashMap::new(),
         sets: HashMap::new(),
@@ -36,21 +36,21 @@ pub(super) fn build(draft: Draft, sources: &mut Sources) -> Option<Model> {
         places: HashMap::new(),
     };
     resolver.all(draft);
-    let Resolver { sources, builder, places, .. } = resolver;
-    if sources.failed() {
+    let Resolver { texts, builder, places, .. } = resolver;
+    if texts.failed() {
         return None;
     }
     match builder.build_with_warnings() {
         Ok(Read { value: model, warnings }) => {
             for warning in warnings.into_iter().filter(|w| w.code != AXIS_LENGTH).take(100) {
-                let said = located(sources, &places, warning);
-                sources.warn(said);
+                let said = located(texts, &places, warning);
+                texts.warn(said);
             }
             let whole = Spot::default();
             if factors(&model) > MOST_FACTORS {
                 let message = "products of products make too long a chain";
                 let help = format!("at most {MOST_FACTORS} factors are multiplied");
-                sources.error(whole, "model/size", message, help);
+                texts.error(whole, "model/size", message, help);
                 return None;
             }
             let parts =
@@ -59,7 +59,7 @@ pub(super) fn build(draft: Draft, sources: &mut Sources) -> Option<Model> {
                 let message =
                     format!("{parts} parts and {} coordinates", model.coordinates().len());
                 let help = "this is more than can be differentiated; use several models";
-                sources.error(whole, "model/size", message, help);
+                texts.error(whole, "model/size", message, help);
                 return None;
             }
             Some(model)
@@ -67,8 +67,8 @@ pub(super) fn build(draft: Draft, sources: &mut Sources) -> Option<Model> {
         Err(findings) => {
             let errors = findings.into_diagnostics();
             for error in errors.into_iter().filter(|e| e.severity == Severity::Error).take(100) {
-                let said = located(sources, &places, error);
-                sources.push(said);
+                let said = located(texts, &places, error);
+                texts.push(said);
             }
             None
         }
@@ -76,9 +76,9 @@ pub(super) fn build(draft: Draft, sources: &mut Sources) -> Option<Model> {
 }
 
 /// What a builder found, at the table of its first subject.
-fn located(sources: &Sources, places: &HashMap<Subject, Spot>, found: Diagnostic) -> Diagnostic {
+fn located(texts: &Texts, places: &HashMap<Subject, Spot>, found: Diagnostic) -> Diagnostic {
     let spot = found.subjects.first().and_then(|subject| places.get(subject)).copied();
-    let said = sources.said(spot.unwrap_or_default(), found.severity, found.code, found.message);
+    let said = texts.said(spot.unwrap_or_default(), found.severity, found.code, found.message);
     said.about_all(found.subjects).with_help(found.help)
 }
 
@@ -122,7 +122,7 @@ fn factors(model: &Model) -> u64 {
 }
 
 struct Resolver<'s> {
-    sources: &'s mut Sources,
+    texts: &'s mut Texts,
     builder: ModelBuilder,
     segments: HashMap<String, SegmentId>,
     sets: HashMap<String, JointSetId>,
@@ -178,16 +178,16 @@ impl Resolver<'_> {
             coordinates.push((id, c.set.clone(), c.follows.clone()));
         }
         // Made first and connected afterwards: a component may read one that stands below it.
-        let mut components: Vec<(ComponentId, String, Name, Law, Vec<Name>)> = vec![];
+        let mut components: Vec<(ComponentId, String, Name, Blueprint, Vec<Name>)> = vec![];
         for c in draft.components {
             let Some(&set) = self.sets.get(&c.set) else { continue };
             let stand_in = Component::Place(Place { child_in_parent: Affine::IDENTITY });
             let source = self.builder.component(set, &c.name.text, stand_in);
             let Source::Output(id, _) = source else { continue };
-            let (port, outputs) = c.law.outputs();
+            let (port, outputs) = c.blueprint.outputs();
             self.mean(&c.set, &c.name, Meaning { source, port, outputs });
             self.places.insert(Subject::component(&c.set, &c.name.text), c.name.spot);
-            components.push((id, c.set, c.name, c.law, c.ports));
+            components.push((id, c.set, c.name, c.blueprint, c.ports));
         }
         for (id, set, follows) in coordinates {
             if let Some(port) = follows
@@ -196,8 +196,8 @@ impl Resolver<'_> {
                 self.builder.follow(id, source);
             }
         }
-        for (id, set, name, law, ports) in components {
-            if let Law::Combine(function) = &law
+        for (id, set, name, blueprint, ports) in components {
+            if let Blueprint::Combine(function) = &blueprint
                 && function.arity() != ports.len()
             {
                 let message = format!(
@@ -207,24 +207,24 @@ impl Resolver<'_> {
                     function.arity()
                 );
                 let help = "connect as many inputs as the function has arguments";
-                self.sources.error(name.spot, "model/arity", message, help);
+                self.texts.error(name.spot, "model/arity", message, help);
                 continue;
             }
             let connected: Vec<Option<Source>> = ports
                 .iter()
                 .enumerate()
-                .map(|(position, port)| self.port(&set, port, law.input(position)))
+                .map(|(position, port)| self.port(&set, port, blueprint.input(position)))
                 .collect();
             let connected: Option<Vec<Source>> = connected.into_iter().collect();
             let Some(connected) = connected else { continue };
-            let before = self.sources.count();
-            match law.build(connected, &mut |name| self.segment(name)) {
+            let before = self.texts.count();
+            match blueprint.build(connected, &mut |name| self.segment(name)) {
                 Ok(component) => *self.builder.component_mut(id) = component,
                 // Unknown segments were named already.
-                Err(_) if self.sources.count() > before => {}
+                Err(_) if self.texts.count() > before => {}
                 Err(why) => {
                     let message = format!("component `{}` cannot be made: {why}", name.text);
-                    self.sources.error(name.spot, "model/component", message, "give other numbers");
+                    self.texts.error(name.spot, "model/component", message, "give other numbers");
                 }
             }
         }
@@ -254,14 +254,14 @@ impl Resolver<'_> {
                     o.segment.text, o.set
                 );
                 let help = "let one joint set move it";
-                self.sources.error(o.segment.spot, "model/duplicate", message, help);
+                self.texts.error(o.segment.spot, "model/duplicate", message, help);
             }
-            let sources: Vec<Option<Source>> =
+            let factors: Vec<Option<Source>> =
                 o.ports.iter().map(|p| self.port(&o.set, p, PortType::Transform)).collect();
-            let Some(sources) = sources.into_iter().collect::<Option<Vec<Source>>>() else {
+            let Some(factors) = factors.into_iter().collect::<Option<Vec<Source>>>() else {
                 continue;
             };
-            let motion = match sources[..] {
+            let motion = match factors[..] {
                 [one] => one,
                 _ if !o.listed => continue,
                 _ => {
@@ -269,7 +269,7 @@ impl Resolver<'_> {
                     while self.names.contains_key(&(o.set.clone(), name.clone())) {
                         name.push('_');
                     }
-                    let product = Component::Product(Product { factors: sources });
+                    let product = Component::Product(Product { factors });
                     let source = self.builder.component(set, &name, product);
                     let meaning = Meaning { source, port: PortType::Transform, outputs: 1 };
                     self.mean(&o.set, &Name { text: name, spot: o.segment.spot }, meaning);
@@ -295,7 +295,7 @@ impl Resolver<'_> {
                         false => format!("segment `{}` is in size `{other}` too", name.text),
                     };
                     let help = "list it once: a segment grows with one group";
-                    self.sources.error(name.spot, "model/size-group", message, help);
+                    self.texts.error(name.spot, "model/size-group", message, help);
                 }
                 segments.push(id);
             }
@@ -306,14 +306,14 @@ impl Resolver<'_> {
     fn twice(&mut self, what: &str, name: &Name) {
         let message = format!("a second {what} is named `{}`", name.text);
         let help = format!("give each {what} a name of its own");
-        self.sources.error(name.spot, "model/duplicate", message, help);
+        self.texts.error(name.spot, "model/duplicate", message, help);
     }
 
     fn mean(&mut self, set: &str, name: &Name, meaning: Meaning) {
         if self.names.insert((set.to_owned(), name.text.clone()), meaning).is_some() {
             let message = format!("`{}` is named twice in joint set `{set}`", name.text);
             let help = "coordinates and components of a joint set share their names: rename one";
-            self.sources.error(name.spot, "model/duplicate", message, help);
+            self.texts.error(name.spot, "model/duplicate", message, help);
         }
     }
 
@@ -321,7 +321,7 @@ impl Resolver<'_> {
         if let Some(id) = self.segments.get(&name.text) {
             return Some(*id);
         }
-        self.sources.error_with(name.spot, "model/unknown-name", || {
+        self.texts.error_with(name.spot, "model/unknown-name", || {
             let known = self.segments.keys().map(String::as_str);
             let otherwise = || "name a segment of this model; omit it for the world".to_owned();
             let help = did_you_mean(&name.text, known, otherwise);
@@ -360,7 +360,7 @@ impl Resolver<'_> {
             Source::Coordinate(id) => Some(id),
             Source::Output(..) => {
                 let message = format!("`{}` is a component", name.text);
-                self.sources.error(name.spot, "model/port-type", message, "name a coordinate");
+                self.texts.error(name.spot, "model/port-type", message, "name a coordinate");
                 None
             }
         }
@@ -392,7 +392,7 @@ impl Resolver<'_> {
         if output == 0 || output > meaning.outputs {
             let message = format!("`{}` asks for an output that is not there", port.text);
             let help = format!("its outputs are counted from 1 to {}", meaning.outputs);
-            self.sources.error(port.spot, "model/unknown-name", message, help);
+            self.texts.error(port.spot, "model/unknown-name", message, help);
             return None;
         }
         if meaning.port != wanted {
@@ -410,7 +410,7 @@ impl Resolver<'_> {
                 }
                 PortType::Transform => "name a component such as rotate, translate or product",
             };
-            self.sources.error(port.spot, "model/port-type", message, help);
+            self.texts.error(port.spot, "model/port-type", message, help);
             return None;
         }
         Some(match meaning.source {
@@ -436,7 +436,7 @@ impl Resolver<'_> {
             [first, ..] => (own, first.as_str()),
             [] => (own, ""),
         };
-        self.sources.error_with(port.spot, "model/unknown-name", || {
+        self.texts.error_with(port.spot, "model/unknown-name", || {
             let known = self.names.keys().filter(|(s, _)| s == set).map(|(_, n)| n.as_str());
             let elsewhere = || self.names.keys().filter(|(_, n)| n == name).map(|(s, _)| s).min();
             let help = match nearest(name, known) {
