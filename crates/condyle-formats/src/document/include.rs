@@ -67,8 +67,9 @@ impl Loader<'_> {
             return None;
         } else if self.open.len() > MOST_NESTED || self.texts.len() > MOST_INCLUDED {
             let message = format!("too many includes: `{path}` is not read");
-            let help =
-                format!("include at most {MOST_INCLUDED} documents, nested at most {MOST_NESTED} deep");
+            let help = format!(
+                "include at most {MOST_INCLUDED} documents, nested at most {MOST_NESTED} deep"
+            );
             ("document/include-depth", message, help)
         } else {
             match (self.include)(&path) {
@@ -76,8 +77,9 @@ impl Loader<'_> {
                 Err(why) => {
                     let message = format!("`{path}` cannot be included: {why}");
                     let kind = self.form.kind.name();
-                    let help =
-                        format!("give the path of another {kind} document, from this one's folder");
+                    let help = format!(
+                        "give the path of another document of kind `{kind}`, from this one's folder"
+                    );
                     ("document/include", message, help)
                 }
             }
@@ -147,7 +149,8 @@ fn merge(texts: &mut Texts, into: &mut Vec<Entry>, more: Vec<Entry>, ours: bool)
             (Value::Number(known), Value::Number(more)) if *known == more => {}
             _ => {
                 let key = &entry.key.text;
-                let message = format!("`{key}` is also given by the document that includes this one");
+                let message =
+                    format!("`{key}` is also given by the document that includes this one");
                 texts.error(entry.key.spot, "document/duplicate", message, "give it once");
             }
         }

@@ -5,24 +5,24 @@ use super::texts::Spot;
 use super::tree::{Node, Value};
 use condyle_diagnostics::nearest;
 
-/// A number with a name.
+/// The value of a named constant.
 #[derive(Clone, Copy)]
 pub(super) enum Constant {
     Is(f64),
-    /// Its text has not come yet.
+    /// Defined further down than what is being read.
     Below,
-    /// Something is wrong with it, which was said.
+    /// Wrong, and reported.
     Wrong,
 }
 
 impl Reader<'_> {
-    /// A finite number, or the name of one.
+    /// A finite number, or an expression of numbers and constants.
     pub(super) fn number(&mut self, node: &Node, label: &str) -> Option<f64> {
         match &node.value {
             Value::Number(n) if n.is_finite() => Some(*n),
             Value::Number(_) => {
                 let message = format!("`{label}` is not a finite number");
-                self.texts.error(node.spot, "model/not-finite", message, "give a number");
+                self.texts.error(node.spot, "document/not-finite", message, "give a number");
                 None
             }
             Value::Text(text) if text.contains(['$', '*']) => self.sum(text, node.spot),
@@ -33,7 +33,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A sum of products, such as `-$thigh - 0.5 * $height`; its signs stand between spaces.
+    /// A sum of products, such as `-$thigh - 0.5 * $height`, with spaces around each sign.
     fn sum(&mut self, text: &str, spot: Spot) -> Option<f64> {
         let mut sum = Some(0.0);
         let mut sign = 1.0;
@@ -41,7 +41,7 @@ impl Reader<'_> {
         loop {
             let next = [" + ", " - "].into_iter().filter_map(|op| Some((rest.find(op)?, op))).min();
             let (at, op) = next.unwrap_or((rest.len(), ""));
-            // All of them are read, so that all that are wrong are named.
+            // Read to the end, so that every error is reported.
             let term = self.product(&rest[..at], spot);
             sum = sum.zip(term).map(|(sum, term)| sum + sign * term);
             if op.is_empty() {
@@ -59,7 +59,7 @@ impl Reader<'_> {
             None => (1.0, text),
         };
         let mut product = sign;
-        // All of them are read, so that all that are wrong are named.
+        // Read to the end, so that every error is reported.
         let factors: Vec<Option<f64>> =
             rest.split('*').map(|factor| self.factor(factor.trim(), spot)).collect();
         for factor in factors {
@@ -69,7 +69,7 @@ impl Reader<'_> {
             return Some(product);
         }
         let message = format!("`{text}` is not a finite number");
-        self.texts.error(spot, "model/not-finite", message, "give smaller numbers");
+        self.texts.error(spot, "document/not-finite", message, "give smaller numbers");
         None
     }
 
@@ -80,32 +80,43 @@ impl Reader<'_> {
                 return Some(number);
             }
             let message = match factor {
-                "" => "a number is missing beside a `*`".to_owned(),
+                "" => "a factor is missing beside `*`".to_owned(),
                 _ => format!("`{factor}` is neither a number nor a constant"),
             };
-            let help = "write a product of them, such as \"0.245 * $stature\"";
-            self.texts.error(spot, "model/number", message, help);
+            let help = "write a product of numbers and constants, such as \"0.245 * $stature\"";
+            self.texts.error(spot, "document/number", message, help);
             return None;
         };
         match self.constants.get(name) {
             Some(Constant::Is(value)) => return Some(*value),
             Some(Constant::Wrong) => return None,
             Some(Constant::Below) => {
-                let message = format!("constant `${name}` is given further down");
-                let help = "move it up: a constant may use those above it";
-                self.texts.error(spot, "model/unknown-name", message, help);
+                let message = format!("constant `${name}` is defined further down");
+                let help = "move it up: a constant may use only those above it";
+                self.texts.error(spot, "document/unknown-name", message, help);
                 return None;
             }
             None => {}
         }
         let known = self.constants.keys().map(String::as_str);
-        self.texts.error_with(spot, "model/unknown-name", || {
+        self.texts.error_with(spot, "document/unknown-name", || {
             let help = match nearest(name, known) {
                 Some(near) => format!("did you mean `${near}`?"),
-                None => "name it in the table `constants`".to_owned(),
+                None => "define it in the table `constants`".to_owned(),
             };
             (format!("unknown constant `${name}`"), help)
         });
         None
+    }
+
+    /// Defines the constants in the order of the text: each may use those before it.
+    pub(super) fn define(&mut self, node: &Node) {
+        let entries = self.entries(node, "constants");
+        self.constants = entries.iter().map(|e| (e.key.text.clone(), Constant::Below)).collect();
+        for entry in entries {
+            let number = self.number(&entry.node, &entry.key.text);
+            let constant = number.map_or(Constant::Wrong, Constant::Is);
+            self.constants.insert(entry.key.text.clone(), constant);
+        }
     }
 }

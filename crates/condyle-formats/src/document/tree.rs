@@ -1,9 +1,6 @@
-//! TOML to a tree of values that know where they stand, with included texts grafted in.
+//! TOML to a tree of values, each with its place in the text.
 
-use super::keys::KINDS;
-use super::source::{Angles, Name, Texts, Spot};
-use condyle_diagnostics::nearest;
-use std::collections::HashMap;
+use super::texts::{Name, Spot, Texts};
 use toml::de::{DeTable, DeValue};
 
 /// How many bytes a text may have.
@@ -60,7 +57,9 @@ pub(super) fn parse(texts: &mut Texts, file: u32, text: &str) -> Option<Vec<Entr
         return None;
     }
     if let Some(start) = too_deep(text) {
-        let help = format!("nest at most {DEEPEST} brackets; a dotted key has at most {LONGEST_KEY} parts");
+        let help = format!(
+            "nest at most {DEEPEST} brackets; a dotted key has at most {LONGEST_KEY} parts"
+        );
         texts.error(at(start), "document/depth", "this is nested too deeply", help);
         return None;
     }
@@ -105,7 +104,8 @@ impl Iterator for Structure<'_> {
                 return self.next();
             }
             quote @ (b'"' | b'\'') => {
-                let close: &[u8] = if rest.starts_with(&[quote; 3]) { &[quote; 3] } else { &[quote] };
+                let close: &[u8] =
+                    if rest.starts_with(&[quote; 3]) { &[quote; 3] } else { &[quote] };
                 let mut i = close.len();
                 while i < rest.len() && !rest[i..].starts_with(close) {
                     if close.len() == 1 && rest[i] == b'\n' {

@@ -1,4 +1,4 @@
-//! What a component does, before its inputs are known.
+//! Components before their inputs are known.
 
 use crate::document::texts::Name;
 use condyle_math::function::{Function, FunctionOfSeveral, SimmSpline};
@@ -50,12 +50,12 @@ pub(super) enum Blueprint {
         path: Box<[SimmSpline; 3]>,
         heading: Option<Heading>,
     },
-    /// Made already, to see whether its parameters will do; its inputs are filled in later.
+    /// Complete except for its inputs: made early to check its parameters.
     Custom(Custom),
     Product,
 }
 
-/// What a cone holds: angles about axes, or an orientation.
+/// What a cone limits: angles about axes, or an orientation.
 #[derive(Clone)]
 pub(super) enum Held {
     Three([Vec3; 3]),
@@ -64,7 +64,7 @@ pub(super) enum Held {
 }
 
 impl Blueprint {
-    /// What flows into the port at a position.
+    /// The type of the input at a position.
     pub(super) fn input(&self, position: usize) -> PortType {
         match self {
             Self::Ball | Self::Cone(Held::Orientation, _) => PortType::Orientation,
@@ -85,13 +85,13 @@ impl Blueprint {
         }
     }
 
-    /// The component; a sentence where its parameters make none.
+    /// The component, or why its parameters are invalid.
     pub(super) fn build(
         self,
         connected: Vec<Source>,
         segment: &mut dyn FnMut(&Name) -> Option<SegmentId>,
     ) -> Result<Component, String> {
-        let unknown = || "it names no segments".to_owned();
+        let unknown = || "it names an unknown segment".to_owned();
         Ok(match (self, &connected[..]) {
             (Self::Map(functions), &[input]) => Component::Map(Map { input, functions }),
             (Self::Combine(function), _) => {
@@ -105,7 +105,7 @@ impl Blueprint {
                     (Held::Three(axes), &[a, b, c]) => Swinging::Angles([a, b, c], axes),
                     (Held::Two(axes), &[a, b]) => Swinging::Directions([a, b], axes),
                     (Held::Orientation, &[one]) => Swinging::Orientation(one),
-                    _ => return Err("it has another number of inputs".to_owned()),
+                    _ => return Err("it has the wrong number of inputs".to_owned()),
                 };
                 Component::Cone(JointCone { of, cone })
             }
@@ -151,7 +151,7 @@ impl Blueprint {
                 Component::Custom(custom)
             }
             (Self::Product, _) => Component::Product(Product { factors: connected }),
-            _ => return Err("it has another number of inputs".to_owned()),
+            _ => return Err("it has the wrong number of inputs".to_owned()),
         })
     }
 }

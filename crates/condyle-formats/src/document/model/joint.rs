@@ -1,25 +1,26 @@
-//! Plain joints in a few lines: each becomes a joint set of the same components as any other.
+//! Plain joints: each is expanded to a joint set of coordinates and components.
 
-use super::draft::{ComponentDraft, CoordinateDraft, Draft, OutputDraft};
-use crate::document::fields::Fields;
-use super::keys;
 use super::blueprint::Blueprint;
+use super::draft::{ComponentDraft, CoordinateDraft, Draft, OutputDraft};
+use super::keys;
 use super::mirror::escaped;
+use super::read::ModelReader;
+use crate::document::fields::Fields;
 use crate::document::texts::Name;
 use crate::document::tree::{Entry, Value};
-use condyle_diagnostics::nearest;
+use condyle_diagnostics::did_you_mean;
 use condyle_math::function::Function;
 use condyle_math::{EulerOrder, Vec3};
 use condyle_model::component::Along;
 use condyle_model::{CoordinateKind, Range};
 use std::collections::HashSet;
 
-/// What a joint is made of.
+/// The coordinates and components of a plain joint.
 #[derive(Default)]
 struct Expansion {
-    /// What its coordinates are called, and what they measure.
+    /// Names and kinds of its coordinates.
     coordinates: Vec<(String, CoordinateKind)>,
-    /// Its components, the factor nearest to the parent first.
+    /// Its components, nearest to the parent first.
     parts: Vec<Part>,
 }
 
@@ -28,7 +29,7 @@ struct Part {
     prefix: &'static str,
     blueprint: Blueprint,
     inputs: Vec<Input>,
-    /// Whether it is a factor of the motion, not only what another one reads.
+    /// Whether it is a factor of the motion, or only an input of another part.
     moves: bool,
 }
 
@@ -38,8 +39,14 @@ enum Input {
 }
 
 impl Expansion {
-    /// Adds a coordinate and the factor that it moves alone.
-    fn with(mut self, name: &str, kind: CoordinateKind, prefix: &'static str, blueprint: Blueprint) -> Self {
+    /// Adds a coordinate and the factor that it drives.
+    fn with(
+        mut self,
+        name: &str,
+        kind: CoordinateKind,
+        prefix: &'static str,
+        blueprint: Blueprint,
+    ) -> Self {
         let inputs = vec![Input::Coordinate(self.coordinates.len())];
         self.coordinates.push((name.to_owned(), kind));
         self.parts.push(Part { prefix, blueprint, inputs, moves: true });
@@ -59,10 +66,13 @@ impl Expansion {
     }
 
     fn turns(self, axes: [Vec3; 3]) -> Self {
-        ["first", "second", "third"].iter().zip(axes).fold(self, |expansion, (n, a)| expansion.turn(n, a))
+        ["first", "second", "third"]
+            .iter()
+            .zip(axes)
+            .fold(self, |expansion, (n, a)| expansion.turn(n, a))
     }
 
-    /// A turn, and a slide along the same axis by so much for each whole turn.
+    /// A turn, and a slide along the same axis by `pitch` for each whole turn.
     fn screw(axis: Vec3, pitch: f64) -> Self {
         let mut expansion = Self::default().turn("angle", axis);
         let blueprint = Blueprint::Map(vec![Function::linear(pitch / std::f64::consts::TAU, 0.0)]);
@@ -73,7 +83,7 @@ impl Expansion {
         expansion
     }
 
-    /// Three angles of one component.
+    /// One component with three angles.
     fn glide(blueprint: Blueprint) -> Self {
         let kind = CoordinateKind::Rotation;
         let coordinates = ["about_x", "about_y", "about_z"].map(|name| (name.to_owned(), kind));
@@ -89,19 +99,14 @@ impl ModelReader<'_> {
         let label = format!("joint.{}", set.text);
         let fields = self.table(&entry.node, set.spot, label.clone(), keys::JOINT);
         draft.sets.push(set.clone());
-        let Some(kind) = fields.get("type") else {
-            let types = format!("one of: {}", types().join(", "));
+        let wanted = format!("one of: {}", types().join(", "));
+        let Some(kind) = self.required(&fields, "type", &wanted) else {
             draft.broken.insert((set.text, String::new()));
-            return self.missing(&fields, "type", &types);
+            return;
         };
         let Some(kind) = self.text(kind, "type") else { return };
-        let segment = match fields.get("segment") {
-            Some(node) => self.text(node, "segment"),
-            None => {
-                self.missing(&fields, "segment", "the name of the segment that moves");
-                None
-            }
-        };
+        let segment = self.required(&fields, "segment", "the name of the segment that moves");
+        let segment = segment.and_then(|node| self.text(node, "segment"));
         let Some(mut expansion) = self.expansion(&fields, &kind) else {
             draft.broken.insert((set.text, String::new()));
             return;
@@ -120,18 +125,17 @@ impl ModelReader<'_> {
                     expansion.coordinates.len()
                 );
                 let help = format!("give {} names", expansion.coordinates.len());
-                self.texts.error(node.spot, "model/length", message, help);
+                self.length(node.spot, message, help);
             }
         }
         let given = fields.get("coordinate").map(|n| self.entries(n, "coordinate"));
         let given = given.unwrap_or_default();
         for entry in given {
             if !expansion.coordinates.iter().any(|(name, _)| *name == entry.key.text) {
-                let names: Vec<&str> = expansion.coordinates.iter().map(|(n, _)| n.as_str()).collect();
-                let help = match nearest(&entry.key.text, names.iter().copied()) {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => format!("its coordinates are: {}", names.join(", ")),
-                };
+                let names: Vec<&str> =
+                    expansion.coordinates.iter().map(|(n, _)| n.as_str()).collect();
+                let all = || format!("its coordinates are: {}", names.join(", "));
+                let help = did_you_mean(&entry.key.text, names.iter().copied(), all);
                 let message = format!("[{label}] has no coordinate `{}`", entry.key.text);
                 self.texts.error(entry.key.spot, "model/unknown-name", message, help);
             }
@@ -179,14 +183,12 @@ impl ModelReader<'_> {
         }
     }
 
-    /// What a joint of that type is made of.
+    /// What a joint of that type expands to.
     fn expansion(&mut self, fields: &Fields<'_>, kind: &Name) -> Option<Expansion> {
         let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
         let Some((_, used)) = keys::JOINT_TYPES.iter().find(|(name, _)| *name == kind.text) else {
-            let help = match nearest(&kind.text, types()) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => format!("types are: {}", types().join(", ")),
-            };
+            let all = || format!("types are: {}", types().join(", "));
+            let help = did_you_mean(&kind.text, types(), all);
             let message = format!("unknown type of joint `{}`", kind.text);
             self.texts.error(kind.spot, "model/joint-type", message, help);
             return None;
@@ -196,7 +198,7 @@ impl ModelReader<'_> {
             let known = keys::JOINT.contains(&key);
             if known && !used.contains(&key) && !keys::JOINT_BASE.contains(&key) {
                 let message = format!("a {} joint has no `{key}`", kind.text);
-                self.texts.error(entry.key.spot, "model/unknown-key", message, "leave it away");
+                self.texts.error(entry.key.spot, "document/unknown-key", message, "omit it");
             }
         }
         let expansion = Expansion::default();
@@ -210,10 +212,8 @@ impl ModelReader<'_> {
             "ball" => expansion.ball(),
             "euler" if fields.get("axes").is_some() => expansion.turns(self.axes::<3>(fields)),
             "euler" => {
-                let Some(node) = fields.get("order") else {
-                    self.missing(fields, "order", "an order such as \"zxy\", or three `axes`");
-                    return None;
-                };
+                let wanted = "an order such as \"zxy\", or three `axes`";
+                let node = self.required(fields, "order", wanted)?;
                 let order = self.order(node, "order")?;
                 expansion.turns([0, 1, 2].map(|i| order.axis(i)))
             }
@@ -223,11 +223,13 @@ impl ModelReader<'_> {
             "prismatic" => {
                 if fields.get("axes").is_none() {
                     self.missing(fields, "axis", "a direction such as [0, 1, 0], or `axes`");
-                    return None;
                 }
                 let axes = self.up_to_three(fields)?;
                 let names = ["first", "second", "third"];
-                names.iter().zip(axes).fold(expansion, |expansion, (name, a)| expansion.slide(name, a))
+                names
+                    .iter()
+                    .zip(axes)
+                    .fold(expansion, |expansion, (name, a)| expansion.slide(name, a))
             }
             "planar" => {
                 let axes = match fields.get("axes") {
@@ -242,9 +244,7 @@ impl ModelReader<'_> {
                 let expansion = expansion.slide("x", x).slide("y", y).slide("z", z);
                 let ball = self.flag(fields.get("ball"), "ball", false);
                 if let Some(node) = fields.get("order").filter(|_| ball) {
-                    let message = "both `ball` and `order` are given";
-                    let help = "an orientation has no order: give one of them";
-                    self.texts.error(node.spot, "model/exclusive", message, help);
+                    self.exclusive(node, "ball", "order");
                 }
                 match ball {
                     true => expansion.ball(),
@@ -253,23 +253,26 @@ impl ModelReader<'_> {
             }
             "screw" => {
                 let axis = self.axes::<1>(fields)[0];
-                let Some(node) = fields.get("pitch") else {
-                    self.missing(fields, "pitch", "how far it goes in one full turn, in metres");
-                    return None;
-                };
+                let wanted = "how far it slides in one full turn, in metres";
+                let node = self.required(fields, "pitch", wanted)?;
                 Expansion::screw(axis, self.number(node, "pitch")?)
             }
             "curve" => expansion.with("parameter", other, "along", self.curve(fields)?),
             "scale" if fields.get("axes").is_some() => {
                 if let Some(node) = fields.get("axis").or(fields.get("volume")) {
-                    let message = "`axes` stand alone";
+                    let message = "`axes` excludes `axis` and `volume`";
                     let help = "give `axes`; or one `axis`, with or without `volume`";
-                    self.texts.error(node.spot, "model/exclusive", message, help);
+                    self.texts.error(node.spot, "document/exclusive", message, help);
                 }
                 let axes = self.up_to_three(fields)?;
                 let names = ["first", "second", "third"];
                 names.iter().zip(axes).fold(expansion, |expansion, (name, axis)| {
-                    expansion.with(name, CoordinateKind::Scale, "by", Blueprint::Scale(Along::Axis(axis)))
+                    expansion.with(
+                        name,
+                        CoordinateKind::Scale,
+                        "by",
+                        Blueprint::Scale(Along::Axis(axis)),
+                    )
                 })
             }
             "scale" => expansion.with("factor", CoordinateKind::Scale, "by", self.scale(fields)?),
@@ -286,7 +289,7 @@ impl ModelReader<'_> {
         let axes: Vec<_> = list.iter().filter_map(|n| self.vector(n, "axes")).collect();
         if axes.is_empty() || axes.len() > 3 {
             let message = format!("`axes` has {} directions", axes.len());
-            self.texts.error(node.spot, "model/length", message, "give one to three");
+            self.length(node.spot, message, "give one to three");
             return None;
         }
         Some(axes)
@@ -295,14 +298,11 @@ impl ModelReader<'_> {
     /// `axis`, or exactly `N` `axes`; after an error z, so that the rest of the joint is read.
     fn axes<const N: usize>(&mut self, fields: &Fields<'_>) -> [Vec3; N] {
         let key = if N == 1 { "axis" } else { "axes" };
-        let Some(node) = fields.get(key) else {
-            let wanted = match N {
-                1 => "a direction such as [0, 0, 1]".to_owned(),
-                _ => format!("{N} directions"),
-            };
-            self.missing(fields, key, &wanted);
-            return [Vec3::Z; N];
+        let wanted = match N {
+            1 => "a direction such as [0, 0, 1]".to_owned(),
+            _ => format!("{N} directions"),
         };
+        let Some(node) = self.required(fields, key, &wanted) else { return [Vec3::Z; N] };
         if N == 1 {
             return [self.vector(node, key).unwrap_or(Vec3::Z); N];
         }
@@ -310,7 +310,7 @@ impl ModelReader<'_> {
         let axes: Vec<Option<Vec3>> = list.iter().map(|n| self.vector(n, key)).collect();
         if axes.len() != N && matches!(node.value, Value::List(_)) {
             let message = format!("`axes` has {} directions", axes.len());
-            self.texts.error(node.spot, "model/length", message, format!("give {N}"));
+            self.length(node.spot, message, format!("give {N}"));
         }
         std::array::from_fn(|i| axes.get(i).copied().flatten().unwrap_or(Vec3::Z))
     }
@@ -320,7 +320,7 @@ fn types() -> Vec<&'static str> {
     keys::JOINT_TYPES.iter().map(|(name, _)| *name).collect()
 }
 
-/// A name for each part that no coordinate and no part before it has.
+/// A name for each part, unique among coordinates and parts.
 fn part_names(expansion: &Expansion) -> Vec<String> {
     let mut taken: HashSet<String> =
         expansion.coordinates.iter().map(|(name, _)| name.clone()).collect();

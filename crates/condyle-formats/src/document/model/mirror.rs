@@ -1,25 +1,25 @@
-//! One side of a body made into the other: D = diag(1, 1, -1) for a plane z, and so on.
+//! The mirrored side of a body. D is the reflection: diag(1, 1, -1) for a plane z, and so on.
 //!
-//! Coordinates keep their values: where both sides have the same ones, the pose of the made side is
-//! D·T·D of the written one. A point p becomes D·p, a frame D·T·D, the axis of a slide D·a, the axis
-//! of a turn -D·a (it is a pseudovector). Only an orientation cannot keep its value, since it *is* a
+//! Coordinates keep their values: for equal values on both sides, the transform of the mirrored side
+//! is D·T·D of the written one. A point p becomes D·p, a frame D·T·D, the axis of a slide D·a, the axis
+//! of a turn -D·a (it is a pseudovector). Only an orientation changes its value, since it *is* a
 //! rotation: (v, w) on one side is (-D·v, w) on the other.
 //!
-//! Components whose formula prefers an axis are made of the same component and others:
+//! A component whose formula singles out an axis is mirrored by the same component and others:
 //!
-//! - an ellipsoid mirrored at x or y takes two of its angles negated; at z, where its own pole is
-//!   reversed, D·Rx(a)·Ry(b)·Rz(c)·D = Rx(π-a)·Ry(b)·Rz(-c)·Rx(π) and the pole comes out right;
-//! - a column takes the negated angles; its rest direction y cannot be mirrored at y.
+//! - an ellipsoid mirrored at x or y has two of its angles negated; at z, which reverses its pole,
+//!   D·Rx(a)·Ry(b)·Rz(c)·D = Rx(π-a)·Ry(b)·Rz(-c)·Rx(π);
+//! - a column has its angles negated; its rest direction y cannot be mirrored at y.
 //!
 //! A cone's directions become D·d, the axes of its angles -D·a, and its bounds of twist \[-hi, -lo\]:
-//! D·R(r, τ)·D = R(D·r, -τ). Factors and amounts of scales and shears keep their values with D·a. What
-//! a user's law would be on the other side nobody knows: both sides are written.
+//! D·R(r, τ)·D = R(D·r, -τ). Factors and amounts of scales and shears keep their values with D·a. The
+//! mirror image of a custom law is not known, so that such a component cannot be mirrored.
 
+use super::blueprint::{Blueprint, Held};
 use super::draft::{
     ClosureDraft, ComponentDraft, ConditionDraft, CoordinateDraft, Draft, Holder, OutputDraft,
     SegmentDraft,
 };
-use super::blueprint::{Held, Blueprint};
 use crate::document::texts::{Name, Texts};
 use condyle_math::function::{Function, SimmSpline};
 use condyle_math::{Affine, Mat3, Vec3};
@@ -30,15 +30,15 @@ use std::collections::HashSet;
 use std::f64::consts::PI;
 
 pub(super) struct Mirror {
-    /// The axis that is reversed.
+    /// The axis normal to the plane.
     pub(super) axis: usize,
-    /// How names end that are mirrored, and what takes the place of that end.
+    /// How the names of the written side end, and those of the mirrored side.
     pub(super) from: String,
     pub(super) to: String,
 }
 
 impl Mirror {
-    /// Adds what is not written.
+    /// Adds everything of the other side that is not written.
     pub(super) fn complete(&self, draft: &mut Draft, texts: &mut Texts) {
         let written = |names: &mut dyn Iterator<Item = &Name>| -> HashSet<String> {
             names.map(|n| n.text.clone()).collect()
@@ -177,7 +177,7 @@ impl Mirror {
     }
 
     fn frame(&self, frame: Affine) -> Affine {
-        // D·M·D changes the sign of what mixes the reversed axis with another.
+        // D·M·D changes the sign of entries that mix the reversed axis with another.
         let column =
             |c: usize, v: Vec3| if c == self.axis { -self.point(v) } else { self.point(v) };
         let m = frame.linear;
@@ -203,7 +203,7 @@ impl Mirror {
         splines
     }
 
-    /// The same cone on the other side; none if rounding has made one of it that is none.
+    /// The mirrored cone; `None` if rounding makes it invalid.
     fn cone(&self, cone: &Cone) -> Option<Cone> {
         let twist = |bounds: Option<[f64; 2]>| bounds.map(|[low, high]| [-high, -low]);
         let point =
@@ -250,7 +250,7 @@ impl Mirror {
         }
     }
 
-    /// Adds a component to those made; none if it cannot be, which is reported.
+    /// Adds the mirrored component to `made`; `None` after an error.
     fn component(
         &self,
         component: &ComponentDraft,
@@ -262,7 +262,7 @@ impl Mirror {
         let mut ports: Vec<Name> = component.ports.iter().map(|p| self.port(p)).collect();
         let part =
             |what: &str| Name { text: format!("{}_mirror_{what}", name.text), spot: name.spot };
-        // The argument at one port by way of slope·x + intercept.
+        // Replaces the input x at a port by slope·x + intercept.
         let mut through = |port: &mut Name, what: &str, slope: f64, intercept: f64| {
             let between = part(what);
             made.push(ComponentDraft {
@@ -296,25 +296,27 @@ impl Mirror {
             }
             Blueprint::Cone(held, cone) => match self.cone(cone) {
                 Some(cone) => Blueprint::Cone(self.held(held), cone),
-                None => return refuse("the cone", "write both sides out"),
+                None => return refuse("the cone", "write both sides"),
             },
-            Blueprint::Contact { segment, surface, before, gliding } => match self.gliding(gliding) {
+            Blueprint::Contact { segment, surface, before, gliding } => match self.gliding(gliding)
+            {
                 Some(gliding) => {
                     let (segment, surface) = (self.renamed(segment), self.renamed(surface));
                     Blueprint::Contact { segment, surface, before: *before, gliding }
                 }
-                None => return refuse("the contact", "write both sides out"),
+                None => return refuse("the contact", "write both sides"),
             },
             Blueprint::Custom(custom) => {
                 let help = format!(
-                    "nobody but its author knows what `{}` is on the other side: write both \
-                     sides out",
+                    "the mirror image of law `{}` is not known: write both sides",
                     custom.law
                 );
-                return refuse("the user's law", &help);
+                return refuse("the custom component", &help);
             }
             Blueprint::Rotate(axis) => Blueprint::Rotate(self.turning(*axis)),
-            Blueprint::Pivot(axis, centre) => Blueprint::Pivot(self.turning(*axis), self.centre(centre)),
+            Blueprint::Pivot(axis, centre) => {
+                Blueprint::Pivot(self.turning(*axis), self.centre(centre))
+            }
             Blueprint::Compensate { segment, ancestors, weight } => Blueprint::Compensate {
                 segment: self.renamed(segment),
                 ancestors: ancestors.iter().map(|a| self.renamed(a)).collect(),
@@ -361,7 +363,7 @@ impl Mirror {
                     0 => [1.0, -1.0, -1.0],
                     2 => [-1.0, 1.0, -1.0],
                     _ => {
-                        let help = "it stands along y: write both sides out, or turn its frame";
+                        let help = "its rest direction is y: write both sides, or turn its frame";
                         return refuse("the column", help);
                     }
                 };
@@ -381,7 +383,7 @@ impl Mirror {
     }
 }
 
-/// A name as it stands at a port, where a dot separates names.
+/// A name as written at a port, where dots separate names.
 pub(super) fn escaped(name: &str) -> String {
     name.replace('\\', "\\\\").replace('.', "\\.")
 }

@@ -1,8 +1,8 @@
-//! Names to positions, and the draft to a checked model.
+//! Resolves names, and builds the checked model.
 
-use super::draft::{ConditionDraft, Draft, Holder};
 use super::blueprint::Blueprint;
-use crate::document::texts::{Name, Texts, Spot};
+use super::draft::{ConditionDraft, Draft, Holder};
+use crate::document::texts::{Name, Spot, Texts};
 use condyle_diagnostics::{Diagnostic, Read, Severity, Subject, did_you_mean, nearest};
 use condyle_math::{Affine, Vec3};
 use condyle_model::component::{Component, Place, PortType, Product};
@@ -12,11 +12,11 @@ use condyle_model::{
 };
 use std::collections::{HashMap, HashSet};
 
-/// The most numbers that a compiled model may keep of its products, and of its derivatives.
+/// How many factors of products, and how many derivatives, a compiled model may have.
 const MOST_FACTORS: u64 = 1 << 20;
 const MOST_DERIVATIVES: u64 = 1 << 24;
 
-/// What a name in a joint set means.
+/// What a name in a joint set stands for.
 #[derive(Clone, Copy)]
 struct Meaning {
     source: Source,
@@ -24,7 +24,7 @@ struct Meaning {
     outputs: usize,
 }
 
-/// Builds the model; errors go to `texts`.
+/// Builds the model; `None` after an error.
 pub(super) fn build(draft: Draft, texts: &mut Texts) -> Option<Model> {
     let mut resolver = Resolver {
         texts,
@@ -48,17 +48,19 @@ pub(super) fn build(draft: Draft, texts: &mut Texts) -> Option<Model> {
             }
             let whole = Spot::default();
             if factors(&model) > MOST_FACTORS {
-                let message = "products of products make too long a chain";
-                let help = format!("at most {MOST_FACTORS} factors are multiplied");
+                let message = "products of products have too many factors";
+                let help = format!("a model may have at most {MOST_FACTORS}");
                 texts.error(whole, "model/size", message, help);
                 return None;
             }
             let parts =
                 model.segments().len() + model.components().len() + model.coordinates().len();
             if (parts as u64).saturating_mul(model.tangent_len() as u64) > MOST_DERIVATIVES {
-                let message =
-                    format!("{parts} parts and {} coordinates", model.coordinates().len());
-                let help = "this is more than can be differentiated; use several models";
+                let message = format!(
+                    "the model is too large: {parts} parts with {} coordinates",
+                    model.coordinates().len()
+                );
+                let help = "split it into several models";
                 texts.error(whole, "model/size", message, help);
                 return None;
             }
@@ -75,14 +77,14 @@ pub(super) fn build(draft: Draft, texts: &mut Texts) -> Option<Model> {
     }
 }
 
-/// What a builder found, at the table of its first subject.
+/// A diagnostic of the builder, placed at the table of its first subject.
 fn located(texts: &Texts, places: &HashMap<Subject, Spot>, found: Diagnostic) -> Diagnostic {
     let spot = found.subjects.first().and_then(|subject| places.get(subject)).copied();
     let said = texts.said(spot.unwrap_or_default(), found.severity, found.code, found.message);
     said.about_all(found.subjects).with_help(found.help)
 }
 
-/// The length of all chains of factors that segments are moved by.
+/// The number of factors of all products, expanded.
 fn factors(model: &Model) -> u64 {
     let count = model.components().len();
     let index = |source: Source| match source {
@@ -127,9 +129,9 @@ struct Resolver<'s> {
     segments: HashMap<String, SegmentId>,
     sets: HashMap<String, JointSetId>,
     names: HashMap<(String, String), Meaning>,
-    /// Components that could not be read, by joint set and name; joints with no name behind.
+    /// As in [`Draft`].
     broken: HashSet<(String, String)>,
-    /// Where the table of each subject stands.
+    /// The place of each subject's table.
     places: HashMap<Subject, Spot>,
 }
 
@@ -177,7 +179,7 @@ impl Resolver<'_> {
             self.mean(&c.set, &c.name, meaning);
             coordinates.push((id, c.set.clone(), c.follows.clone()));
         }
-        // Made first and connected afterwards: a component may read one that stands below it.
+        // All are added before any is connected: a component may reference one below it.
         let mut components: Vec<(ComponentId, String, Name, Blueprint, Vec<Name>)> = vec![];
         for c in draft.components {
             let Some(&set) = self.sets.get(&c.set) else { continue };
@@ -206,7 +208,7 @@ impl Resolver<'_> {
                     ports.len(),
                     function.arity()
                 );
-                let help = "connect as many inputs as the function has arguments";
+                let help = "give as many inputs as the function has arguments";
                 self.texts.error(name.spot, "model/arity", message, help);
                 continue;
             }
@@ -220,11 +222,16 @@ impl Resolver<'_> {
             let before = self.texts.count();
             match blueprint.build(connected, &mut |name| self.segment(name)) {
                 Ok(component) => *self.builder.component_mut(id) = component,
-                // Unknown segments were named already.
+                // Unknown segments are reported already.
                 Err(_) if self.texts.count() > before => {}
                 Err(why) => {
-                    let message = format!("component `{}` cannot be made: {why}", name.text);
-                    self.texts.error(name.spot, "model/component", message, "give other numbers");
+                    let message = format!("component `{}` is invalid: {why}", name.text);
+                    self.texts.error(
+                        name.spot,
+                        "model/component",
+                        message,
+                        "change its parameters",
+                    );
                 }
             }
         }
@@ -253,7 +260,7 @@ impl Resolver<'_> {
                     "segment `{}` is moved by `{other}` and by `{}`",
                     o.segment.text, o.set
                 );
-                let help = "let one joint set move it";
+                let help = "only one joint set may move a segment";
                 self.texts.error(o.segment.spot, "model/duplicate", message, help);
             }
             let factors: Vec<Option<Source>> =
@@ -282,7 +289,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Size groups, each segment in one at most.
+    /// Size groups; a segment may be in one of them.
     fn sizes(&mut self, sizes: &[super::draft::SizeDraft]) {
         let mut group_of: HashMap<&str, &str> = HashMap::new();
         for size in sizes {
@@ -292,9 +299,9 @@ impl Resolver<'_> {
                 if let Some(other) = group_of.insert(&name.text, &size.name.text) {
                     let message = match other == size.name.text {
                         true => format!("segment `{}` is listed twice", name.text),
-                        false => format!("segment `{}` is in size `{other}` too", name.text),
+                        false => format!("segment `{}` is also in size group `{other}`", name.text),
                     };
-                    let help = "list it once: a segment grows with one group";
+                    let help = "list it once: a segment may be in one group";
                     self.texts.error(name.spot, "model/size-group", message, help);
                 }
                 segments.push(id);
@@ -304,15 +311,15 @@ impl Resolver<'_> {
     }
 
     fn twice(&mut self, what: &str, name: &Name) {
-        let message = format!("a second {what} is named `{}`", name.text);
-        let help = format!("give each {what} a name of its own");
+        let message = format!("there are two {what}s named `{}`", name.text);
+        let help = format!("give each {what} a different name");
         self.texts.error(name.spot, "model/duplicate", message, help);
     }
 
     fn mean(&mut self, set: &str, name: &Name, meaning: Meaning) {
         if self.names.insert((set.to_owned(), name.text.clone()), meaning).is_some() {
-            let message = format!("`{}` is named twice in joint set `{set}`", name.text);
-            let help = "coordinates and components of a joint set share their names: rename one";
+            let message = format!("there are two `{}` in joint set `{set}`", name.text);
+            let help = "coordinates and components of a joint set need different names";
             self.texts.error(name.spot, "model/duplicate", message, help);
         }
     }
@@ -366,7 +373,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// What a port names: `name` in its own set, `set.name`, and `.N` behind for one of several
+    /// Resolves a port: `name` in its own set, or `set.name`, followed by `.N` for one of several
     /// outputs, counted from 1.
     fn port(&mut self, own: &str, port: &Name, wanted: PortType) -> Option<Source> {
         let parts = parts(&port.text);
@@ -390,8 +397,8 @@ impl Resolver<'_> {
             return None;
         };
         if output == 0 || output > meaning.outputs {
-            let message = format!("`{}` asks for an output that is not there", port.text);
-            let help = format!("its outputs are counted from 1 to {}", meaning.outputs);
+            let message = format!("`{}` names an output that does not exist", port.text);
+            let help = format!("its outputs are numbered from 1 to {}", meaning.outputs);
             self.texts.error(port.spot, "model/unknown-name", message, help);
             return None;
         }
@@ -404,9 +411,11 @@ impl Resolver<'_> {
             let message =
                 format!("`{}` is {}, not {}", port.text, word(meaning.port), word(wanted));
             let help = match wanted {
-                PortType::Scalar => "name a coordinate that is one number, a map or a combine",
+                PortType::Scalar => {
+                    "name a scalar coordinate, or a component such as map or combine"
+                }
                 PortType::Orientation => {
-                    "name a coordinate of kind \"orientation\", or a cone that holds one"
+                    "name a coordinate of kind \"orientation\", or a cone of one"
                 }
                 PortType::Transform => "name a component such as rotate, translate or product",
             };
@@ -419,7 +428,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// Whether a port names something that is there, but could not be read.
+    /// Whether a port names a component that could not be read, which is reported already.
     fn is_broken(&self, own: &str, parts: &[String]) -> bool {
         let has = |set: &str, name: &str| self.broken.contains(&(set.to_owned(), name.to_owned()));
         match parts {
@@ -454,7 +463,7 @@ impl Resolver<'_> {
     }
 }
 
-/// The names of a port; a backslash takes the next letter as it is.
+/// The names of a port, separated by dots; a backslash escapes the next character.
 fn parts(text: &str) -> Vec<String> {
     let mut parts = vec![String::new()];
     let mut letters = text.chars();

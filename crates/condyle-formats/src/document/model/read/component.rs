@@ -1,18 +1,18 @@
 //! Components: their parameters, and the names at their ports.
 
-use crate::document::model::draft::{ComponentDraft, Draft};
+use super::FRAME;
+use super::ModelReader;
 use crate::document::fields::Fields;
 use crate::document::function::rescaled;
-use crate::document::model::keys;
 use crate::document::model::blueprint::Blueprint;
+use crate::document::model::draft::{ComponentDraft, Draft};
+use crate::document::model::keys;
 use crate::document::texts::Name;
-use crate::document::tree::{Entry, Node, Value};
-use super::FRAME;
-use condyle_diagnostics::nearest;
-use condyle_math::Vec3;
+use crate::document::tree::{Entry, Value};
+use condyle_diagnostics::did_you_mean;
 use condyle_math::function::Function;
 
-/// What is asked for where a direction is missing.
+/// The help where a direction is missing.
 pub(super) const DIRECTION: &str = "a direction such as [0, 0, 1]";
 
 impl ModelReader<'_> {
@@ -26,14 +26,19 @@ impl ModelReader<'_> {
         });
         match read {
             Some((blueprint, ports)) => {
-                draft.components.push(ComponentDraft { set: set.to_owned(), name, blueprint, ports });
+                draft.components.push(ComponentDraft {
+                    set: set.to_owned(),
+                    name,
+                    blueprint,
+                    ports,
+                });
             }
-            // What reads it is not to blame.
+            // Do not report errors again for components that reference this one.
             None => _ = draft.broken.insert((set.to_owned(), name.text)),
         }
     }
 
-    /// The one table of a component, which is named by its kind, and the keys of that kind.
+    /// The one table of a component, named by its kind, and the keys of that kind.
     fn kind_of<'t>(
         &mut self,
         label: &str,
@@ -42,8 +47,8 @@ impl ModelReader<'_> {
         let kinds: Vec<&str> = keys::COMPONENTS.iter().map(|(kind, _)| *kind).collect();
         let [one] = self.entries(&entry.node, label) else {
             if matches!(entry.node.value, Value::Table(_)) {
-                let message = format!("[{label}] does not hold one component");
-                let help = format!("name its kind: [{label}.KIND] with {}", kinds.join(", "));
+                let message = format!("[{label}] must hold exactly one component");
+                let help = format!("give its kind as [{label}.KIND], one of: {}", kinds.join(", "));
                 self.texts.error(entry.key.spot, "model/component", message, help);
             }
             return None;
@@ -52,10 +57,8 @@ impl ModelReader<'_> {
         if let Some((_, known)) = keys::COMPONENTS.iter().find(|(k, _)| *k == kind) {
             return Some((one, known));
         }
-        let help = match nearest(kind, kinds.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("kinds are: {}", kinds.join(", ")),
-        };
+        let all = || format!("kinds are: {}", kinds.join(", "));
+        let help = did_you_mean(kind, kinds.iter().copied(), all);
         let message = format!("unknown kind of component `{kind}`");
         self.texts.error(one.key.spot, "model/component", message, help);
         None
@@ -66,22 +69,22 @@ impl ModelReader<'_> {
         let names = self.ports(fields, kind);
         let blueprint = match kind {
             "map" => Blueprint::Map(self.map(fields)?),
-            "combine" => match fields.get("function") {
-                Some(node) => Blueprint::Combine(self.several(node, "function")?),
-                None => {
-                    self.missing(fields, "function", "{ slopes = [...], intercept = 0 }");
-                    return None;
-                }
-            },
-            "rotate" => Blueprint::Rotate(self.needed(fields, "axis", DIRECTION)?),
-            "translate" => {
-                Blueprint::Translate(self.needed(fields, "axis", "a direction such as [0, 1, 0]")?)
+            "combine" => {
+                let wanted = "{ slopes = [...], intercept = 0 }";
+                let node = self.required(fields, "function", wanted)?;
+                Blueprint::Combine(self.several(node, "function")?)
             }
+            "rotate" => Blueprint::Rotate(self.required_vector(fields, "axis", DIRECTION)?),
+            "translate" => Blueprint::Translate(self.required_vector(
+                fields,
+                "axis",
+                "a direction such as [0, 1, 0]",
+            )?),
             "depend" => self.depend(fields)?,
             "cone" => self.cone(fields)?,
             "contact" => self.contact(fields)?,
             "pivot" => {
-                let axis = self.needed(fields, "axis", DIRECTION);
+                let axis = self.required_vector(fields, "axis", DIRECTION);
                 let centre = self.centre(fields)?;
                 Blueprint::Pivot(axis?, centre)
             }
@@ -118,13 +121,8 @@ impl ModelReader<'_> {
         };
         let mut names: Vec<Option<Name>> = vec![];
         for port in single {
-            match fields.get(port) {
-                Some(node) => names.push(self.text(node, port)),
-                None => {
-                    self.missing(fields, port, "the name of a coordinate or a component");
-                    names.push(None);
-                }
-            }
+            let wanted = "the name of a coordinate or a component";
+            names.push(self.required(fields, port, wanted).and_then(|n| self.text(n, port)));
         }
         let several = match kind {
             "combine" | "custom" => Some("inputs"),
@@ -134,17 +132,13 @@ impl ModelReader<'_> {
             _ => None,
         };
         if let Some(port) = several {
-            match fields.get(port) {
+            let wanted = match kind {
+                "cone" => "the names of three angles (or two), or an `orientation`",
+                _ => "a list of names",
+            };
+            match self.required(fields, port, wanted) {
                 Some(node) => names.extend(self.names(node, port).0.into_iter().map(Some)),
-                None if kind == "cone" => {
-                    let wanted = "the names of three angles (or two), or an `orientation`";
-                    self.missing(fields, port, wanted);
-                    names.push(None);
-                }
-                None => {
-                    self.missing(fields, port, "a list of names");
-                    names.push(None);
-                }
+                None => names.push(None),
             }
         }
         names.into_iter().collect()
@@ -166,7 +160,11 @@ impl ModelReader<'_> {
     fn compensate(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
         let (Some(segment), Some(ancestors)) = (fields.get("segment"), fields.get("ancestors"))
         else {
-            self.missing(fields, "ancestors", "`segment` and the `ancestors` to be compensated");
+            self.missing(
+                fields,
+                "ancestors",
+                "`segment`, and the `ancestors` whose turns it compensates",
+            );
             return None;
         };
         let segment = self.text(segment, "segment");
@@ -176,16 +174,6 @@ impl ModelReader<'_> {
             None => 1.0,
         };
         Some(Blueprint::Compensate { segment: segment?, ancestors, weight })
-    }
-
-    pub(super) fn needed(&mut self, fields: &Fields<'_>, key: &str, wanted: &str) -> Option<Vec3> {
-        match fields.get(key) {
-            Some(node) => self.vector(node, key),
-            None => {
-                self.missing(fields, key, wanted);
-                None
-            }
-        }
     }
 
     fn map(&mut self, fields: &Fields<'_>) -> Option<Vec<Function>> {
@@ -201,8 +189,7 @@ impl ModelReader<'_> {
                 return None;
             }
             (Some(_), Some(node)) => {
-                let message = "both `function` and `functions` are given";
-                self.texts.error(node.spot, "model/exclusive", message, "give one of them");
+                self.exclusive(node, "function", "functions");
                 return None;
             }
         };
@@ -210,46 +197,5 @@ impl ModelReader<'_> {
         let (argument, value) = (unit("in")?, unit("out")?);
         functions = functions.into_iter().map(|f| rescaled(f, argument, value)).collect();
         Some(functions)
-    }
-
-    /// What numbers in a unit have to be multiplied with.
-    pub(super) fn unit_of(&mut self, node: &Node, key: &str) -> Option<f64> {
-        let name = self.text(node, key)?;
-        match name.text.as_str() {
-            "rad" | "m" => Some(1.0),
-            "deg" => Some(std::f64::consts::PI / 180.0),
-            "mm" => Some(0.001),
-            other => {
-                let message = format!("unknown unit `{other}`");
-                let help = "units are: rad, deg, m, mm";
-                self.texts.error(name.spot, "model/unit", message, help);
-                None
-            }
-        }
-    }
-
-    /// What stands at a key that takes one of a few words; the first of them unless said.
-    pub(super) fn word<T: Copy>(
-        &mut self,
-        fields: &Fields<'_>,
-        key: &str,
-        words: &[(&str, T)],
-    ) -> Option<T> {
-        let Some(node) = fields.get(key) else { return words.first().map(|(_, value)| *value) };
-        let name = self.text(node, key)?;
-        if let Some((_, value)) = words.iter().find(|(word, _)| *word == name.text) {
-            return Some(*value);
-        }
-        let known = words.iter().map(|(word, _)| *word);
-        let help = match nearest(&name.text, known.clone()) {
-            Some(near) => format!("did you mean \"{near}\"?"),
-            None => {
-                let known: Vec<String> = known.map(|word| format!("\"{word}\"")).collect();
-                format!("give {}", known.join(" or "))
-            }
-        };
-        let message = format!("`{key}` is `{}`", name.text);
-        self.texts.error(name.spot, "model/word", message, help);
-        None
     }
 }
