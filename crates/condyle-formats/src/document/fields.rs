@@ -284,7 +284,7 @@ impl Reader<'_> {
         let known = words.iter().map(|(word, _)| *word);
         let all = || format!("give `{}`", known.clone().collect::<Vec<_>>().join("` or `"));
         let help = did_you_mean(&name.text, known.clone(), all);
-        let message = format!("unknown `{key}`: `{}`", name.text);
+        let message = format!("unknown value `{}` of `{key}`", name.text);
         self.texts.error(name.spot, "document/word", message, help);
         None
     }

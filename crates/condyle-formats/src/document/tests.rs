@@ -49,7 +49,7 @@ fn markers(mut reader: Reader<'_>, top: &Fields<'_>) -> Option<Vec<Marker>> {
             continue;
         };
         let (name, called) = (entry.key.text.clone(), called.text);
-        let grows = grows.map_or(0.0, |f| f.value(2.0));
+        let grows = grows.map_or(0.0, |f| f.apply(2.0));
         markers.push(Marker { name, called, weight, offset, lean, grows });
     }
     (reader.texts.count() == before).then_some(markers)
@@ -108,14 +108,14 @@ fn errors_of_another_kind_have_their_places_and_generic_codes() {
         said,
         [
             (
-                "document/missing",
-                "line 3, column 12: bad.toml:3:9: [marker.toe] has no `called` (give the marker's \
-                 other name)"
-            ),
-            (
                 "document/unknown-key",
                 "line 3, column 12: bad.toml:4:1: unknown key `caled` in [marker.toe] (did you \
                  mean `called`?)"
+            ),
+            (
+                "document/missing",
+                "line 3, column 12: bad.toml:3:9: [marker.toe] has no `called` (give the marker's \
+                 other name)"
             ),
             (
                 "document/kind",
