@@ -48,6 +48,6 @@ fn what_is_listed_twice_is_refused() {
     // Its other side is brought twice as well.
     assert_eq!(refused(twice)[0], "segment `femur_r` is listed twice");
     let both = "[size.a]\nsegments = [\"pelvis\"]\n[size.b]\nsegments = [\"pelvis\"]";
-    assert_eq!(refused(both), ["segment `pelvis` is in size `a` too"]);
+    assert_eq!(refused(both), ["segment `pelvis` is also in size group `a`"]);
     assert_eq!(refused("[size.a]\nsegments = [\"toes_r\"]"), ["unknown segment `toes_r`"]);
 }

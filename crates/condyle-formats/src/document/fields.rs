@@ -1,35 +1,23 @@
 //! Typed access to the tree: every wrong type, unknown key and unknown constant is reported once,
 //! and reading goes on.
 
-use super::source::{Angles, Name, Sources, Spot};
+use super::number::Constant;
+use super::texts::{Angles, Name, Spot, Texts};
 use super::tree::{Entry, Node, Value};
-use condyle_diagnostics::nearest;
+use condyle_diagnostics::did_you_mean;
 use condyle_math::{Affine, EulerOrder, Mat3, Vec3};
-use condyle_model::component::Registry;
 use std::collections::HashMap;
 
-/// What the tree is read with.
+/// Reads values of a tree and reports what is wrong with them.
 pub(super) struct Reader<'s> {
-    pub(super) sources: &'s mut Sources,
+    pub(super) texts: &'s mut Texts,
     pub(super) constants: HashMap<String, Constant>,
-    /// The laws that components of kind `custom` may name.
-    pub(super) laws: &'s Registry,
 }
 
-/// A number with a name.
-#[derive(Clone, Copy)]
-pub(super) enum Constant {
-    Is(f64),
-    /// Its text has not come yet.
-    Below,
-    /// Something is wrong with it, which was said.
-    Wrong,
-}
-
-/// A table whose keys were looked at.
+/// A table whose keys are known.
 pub(super) struct Fields<'t> {
     entries: &'t [Entry],
-    /// Where its name stands.
+    /// The place of its name.
     pub(super) spot: Spot,
     /// Its name in messages, such as `segment.tibia_r`.
     pub(super) label: String,
@@ -48,7 +36,7 @@ impl<'t> Fields<'t> {
 impl Reader<'_> {
     pub(super) fn wrong(&mut self, node: &Node, label: &str, wanted: &str) {
         let message = format!("`{label}` is {}", node.describe());
-        self.sources.error(node.spot, "model/type", message, format!("give {wanted}"));
+        self.texts.error(node.spot, "document/type", message, format!("give {wanted}"));
     }
 
     /// The entries of a table with any keys.
@@ -68,7 +56,7 @@ impl Reader<'_> {
         node: &'t Node,
         spot: Spot,
         label: String,
-        known: &'static [&'static str],
+        known: &[&str],
     ) -> Fields<'t> {
         let entries = self.entries(node, &label);
         for entry in entries {
@@ -80,118 +68,48 @@ impl Reader<'_> {
     }
 
     pub(super) fn unknown_key(&mut self, key: &Name, label: &str, known: &[&str]) {
-        let help = match nearest(&key.text, known.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("known keys are: {}", known.join(", ")),
-        };
+        let all = || format!("known keys are: {}", known.join(", "));
+        let help = did_you_mean(&key.text, known.iter().copied(), all);
         let message = match label {
             "" => format!("unknown key `{}`", key.text),
             label => format!("unknown key `{}` in [{label}]", key.text),
         };
-        self.sources.error(key.spot, "model/unknown-key", message, help);
+        self.texts.error(key.spot, "document/unknown-key", message, help);
     }
 
     pub(super) fn missing(&mut self, fields: &Fields<'_>, key: &str, wanted: &str) {
         let message = format!("[{}] has no `{key}`", fields.label);
-        self.sources.error(fields.spot, "model/missing", message, format!("give {wanted}"));
+        self.texts.error(fields.spot, "document/missing", message, format!("give {wanted}"));
     }
 
-    /// A finite number, or the name of one.
-    pub(super) fn number(&mut self, node: &Node, label: &str) -> Option<f64> {
-        match &node.value {
-            Value::Number(n) if n.is_finite() => Some(*n),
-            Value::Number(_) => {
-                let message = format!("`{label}` is not a finite number");
-                self.sources.error(node.spot, "model/not-finite", message, "give a number");
-                None
-            }
-            Value::Text(text) if text.contains(['$', '*']) => self.sum(text, node.spot),
-            _ => {
-                self.wrong(node, label, "a number");
-                None
-            }
+    /// The value of a key that must be there.
+    pub(super) fn required<'t>(
+        &mut self,
+        fields: &Fields<'t>,
+        key: &str,
+        wanted: &str,
+    ) -> Option<&'t Node> {
+        let node = fields.get(key);
+        if node.is_none() {
+            self.missing(fields, key, wanted);
         }
+        node
     }
 
-    /// A sum of products, such as `-$thigh - 0.5 * $height`; its signs stand between spaces.
-    fn sum(&mut self, text: &str, spot: Spot) -> Option<f64> {
-        let mut sum = Some(0.0);
-        let mut sign = 1.0;
-        let mut rest = text.trim();
-        loop {
-            let next = [" + ", " - "].into_iter().filter_map(|op| Some((rest.find(op)?, op))).min();
-            let (at, op) = next.unwrap_or((rest.len(), ""));
-            // All of them are read, so that all that are wrong are named.
-            let term = self.product(&rest[..at], spot);
-            sum = sum.zip(term).map(|(sum, term)| sum + sign * term);
-            if op.is_empty() {
-                return sum;
-            }
-            sign = if op == " - " { -1.0 } else { 1.0 };
-            rest = &rest[at + op.len()..];
-        }
+    /// Two keys of which only one may be given.
+    pub(super) fn exclusive(&mut self, node: &Node, one: &str, other: &str) {
+        let message = format!("both `{one}` and `{other}` are given");
+        self.texts.error(node.spot, "document/exclusive", message, "give one of them");
     }
 
-    /// A product of numbers and constants, such as `-0.5 * $half`.
-    fn product(&mut self, text: &str, spot: Spot) -> Option<f64> {
-        let (sign, rest) = match text.trim_start().strip_prefix('-') {
-            Some(rest) => (-1.0, rest),
-            None => (1.0, text),
-        };
-        let mut product = sign;
-        // All of them are read, so that all that are wrong are named.
-        let factors: Vec<Option<f64>> =
-            rest.split('*').map(|factor| self.factor(factor.trim(), spot)).collect();
-        for factor in factors {
-            product *= factor?;
-        }
-        if product.is_finite() {
-            return Some(product);
-        }
-        let message = format!("`{text}` is not a finite number");
-        self.sources.error(spot, "model/not-finite", message, "give smaller numbers");
-        None
+    /// A list or string of the wrong length.
+    pub(super) fn length(&mut self, spot: Spot, message: String, help: impl Into<String>) {
+        self.texts.error(spot, "document/length", message, help);
     }
 
-    fn factor(&mut self, factor: &str, spot: Spot) -> Option<f64> {
-        let Some(name) = factor.strip_prefix('$') else {
-            let plain = factor.starts_with(|c: char| c.is_ascii_digit() || c == '.');
-            if let Some(number) = factor.parse().ok().filter(|_| plain) {
-                return Some(number);
-            }
-            let message = match factor {
-                "" => "a number is missing beside a `*`".to_owned(),
-                _ => format!("`{factor}` is neither a number nor a constant"),
-            };
-            let help = "write a product of them, such as \"0.245 * $stature\"";
-            self.sources.error(spot, "model/number", message, help);
-            return None;
-        };
-        match self.constants.get(name) {
-            Some(Constant::Is(value)) => return Some(*value),
-            Some(Constant::Wrong) => return None,
-            Some(Constant::Below) => {
-                let message = format!("constant `${name}` is given further down");
-                let help = "move it up: a constant may use those above it";
-                self.sources.error(spot, "model/unknown-name", message, help);
-                return None;
-            }
-            None => {}
-        }
-        let known = self.constants.keys().map(String::as_str);
-        self.sources.error_with(spot, "model/unknown-name", || {
-            let help = match nearest(name, known) {
-                Some(near) => format!("did you mean `${near}`?"),
-                None => "name it in the table `constants`".to_owned(),
-            };
-            (format!("unknown constant `${name}`"), help)
-        });
-        None
-    }
-
-    /// What a number at this spot has to be multiplied with, if it is an angle.
+    /// The factor from the unit of angles at this spot to radians.
     pub(super) fn angle_unit(&self, spot: Spot) -> f64 {
-        match self.sources.angles(spot) {
+        match self.texts.angles(spot) {
             Angles::Degrees => std::f64::consts::PI / 180.0,
             Angles::Radians => 1.0,
         }
@@ -201,7 +119,7 @@ impl Reader<'_> {
         match &node.value {
             Value::Text(text) => Some(Name { text: text.clone(), spot: node.spot }),
             _ => {
-                self.wrong(node, label, "a text");
+                self.wrong(node, label, "a string");
                 None
             }
         }
@@ -225,7 +143,7 @@ impl Reader<'_> {
             return Some(n as usize);
         }
         let message = format!("`{label}` is {n}");
-        self.sources.error(node.spot, "model/type", message, "give a whole number from 0");
+        self.texts.error(node.spot, "document/type", message, "give a whole number from 0");
         None
     }
 
@@ -241,7 +159,7 @@ impl Reader<'_> {
 
     pub(super) fn numbers(&mut self, node: &Node, label: &str) -> Option<Vec<f64>> {
         let list = self.list(node, label)?;
-        // All of them are read, so that all that are wrong are named.
+        // Read to the end, so that every error is reported.
         let numbers: Vec<Option<f64>> = list.iter().map(|n| self.number(n, label)).collect();
         numbers.into_iter().collect()
     }
@@ -254,7 +172,7 @@ impl Reader<'_> {
             Ok(numbers) => Some(numbers),
             Err(_) => {
                 let message = format!("`{label}` has {count} numbers");
-                self.sources.error(node.spot, "model/length", message, format!("give {N}"));
+                self.texts.error(node.spot, "document/length", message, format!("give {N}"));
                 None
             }
         }
@@ -272,7 +190,7 @@ impl Reader<'_> {
         Some(pairs?.into_iter().map(|[x, y]| (x, y)).unzip())
     }
 
-    /// A name, or a list of names; the second answer tells whether it was a list.
+    /// A name, or a list of names, and whether it was a list.
     pub(super) fn names(&mut self, node: &Node, label: &str) -> (Vec<Name>, bool) {
         match &node.value {
             Value::List(list) => (list.iter().filter_map(|n| self.text(n, label)).collect(), true),
@@ -280,7 +198,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A rigid (or any) frame from keys such as `at`, `turn`, `order`, `matrix`.
+    /// An affine frame from keys such as `at`, `turn`, `order`, `matrix`.
     pub(super) fn frame(&mut self, fields: &Fields<'_>, keys: [&str; 4]) -> Affine {
         let [at, turn, order, matrix] = keys;
         let point = fields.get(at).and_then(|n| self.vector(n, at)).unwrap_or(Vec3::ZERO);
@@ -291,14 +209,13 @@ impl Reader<'_> {
             let angles = self.some::<3>(node, turn).unwrap_or_default().map(|a| unit * a);
             linear = named.unwrap_or(EulerOrder::XYZ).to_mat3(angles);
         } else if let Some(node) = fields.get(order) {
-            let message = format!("`{order}` stands without `{turn}`");
-            let help = format!("give the three angles of `{turn}`, or leave `{order}` away");
-            self.sources.error(node.spot, "model/missing", message, help);
+            let message = format!("`{order}` is given without `{turn}`");
+            let help = format!("give three angles as `{turn}`, or omit `{order}`");
+            self.texts.error(node.spot, "document/missing", message, help);
         }
         if let Some(node) = fields.get(matrix) {
             if fields.get(turn).is_some() {
-                let message = format!("both `{turn}` and `{matrix}` are given");
-                self.sources.error(node.spot, "model/exclusive", message, "give one of them");
+                self.exclusive(node, turn, matrix);
             }
             let rows = self.list(node, matrix).unwrap_or_default();
             let rows: Vec<Vec3> = rows.iter().filter_map(|n| self.vector(n, matrix)).collect();
@@ -306,7 +223,7 @@ impl Reader<'_> {
                 [x, y, z] => linear = Mat3::from_columns(x, y, z).transpose(),
                 _ => {
                     let message = format!("`{matrix}` has {} rows", rows.len());
-                    self.sources.error(node.spot, "model/length", message, "give 3 rows of 3");
+                    self.texts.error(node.spot, "document/length", message, "give 3 rows of 3");
                 }
             }
         }
@@ -319,10 +236,56 @@ impl Reader<'_> {
             Ok(order) => Some(order),
             Err(_) => {
                 let message = format!("unknown rotation order `{}`", name.text);
-                let help = "give three of x, y, z with none twice in a row, such as `zxy`";
-                self.sources.error(name.spot, "model/order", message, help);
+                let help = "give three of x, y, z, no two adjacent ones equal, such as `zxy`";
+                self.texts.error(name.spot, "document/order", message, help);
                 None
             }
         }
+    }
+
+    /// A vector that must be there.
+    pub(super) fn required_vector(
+        &mut self,
+        fields: &Fields<'_>,
+        key: &str,
+        wanted: &str,
+    ) -> Option<Vec3> {
+        self.required(fields, key, wanted).and_then(|node| self.vector(node, key))
+    }
+
+    /// The factor from a named unit to radians or metres.
+    pub(super) fn unit_of(&mut self, node: &Node, key: &str) -> Option<f64> {
+        let name = self.text(node, key)?;
+        match name.text.as_str() {
+            "rad" | "m" => Some(1.0),
+            "deg" => Some(std::f64::consts::PI / 180.0),
+            "mm" => Some(0.001),
+            other => {
+                let message = format!("unknown unit `{other}`");
+                let help = "units are: rad, deg, m, mm";
+                self.texts.error(name.spot, "document/unit", message, help);
+                None
+            }
+        }
+    }
+
+    /// One of a few words; the first of them is the default.
+    pub(super) fn word<T: Copy>(
+        &mut self,
+        fields: &Fields<'_>,
+        key: &str,
+        words: &[(&str, T)],
+    ) -> Option<T> {
+        let Some(node) = fields.get(key) else { return words.first().map(|(_, value)| *value) };
+        let name = self.text(node, key)?;
+        if let Some((_, value)) = words.iter().find(|(word, _)| *word == name.text) {
+            return Some(*value);
+        }
+        let known = words.iter().map(|(word, _)| *word);
+        let all = || format!("give `{}`", known.clone().collect::<Vec<_>>().join("` or `"));
+        let help = did_you_mean(&name.text, known.clone(), all);
+        let message = format!("unknown value `{}` of `{key}`", name.text);
+        self.texts.error(name.spot, "document/word", message, help);
+        None
     }
 }

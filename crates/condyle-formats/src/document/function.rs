@@ -1,15 +1,20 @@
-//! Functions of one scalar and of several.
+//! Functions of one argument and of several.
 
 use super::fields::Reader;
-use super::keys;
 use super::tree::{Node, Value};
 use condyle_math::function::{
     Curve, Function, FunctionOfSeveral, KnotError, MultivariatePolynomial, PiecewiseLinear,
     Polynomial, SimmSpline,
 };
 
+/// The keys of a function of one argument: a curve, and a factor.
+pub(super) const FUNCTION: &[&str] =
+    &["constant", "linear", "ends", "polynomial", "spline", "lines", "factor"];
+/// The keys of a function of several arguments.
+pub(super) const SEVERAL: &[&str] = &["slopes", "intercept", "dimension", "order", "coefficients"];
+
 impl Reader<'_> {
-    /// A number, or a table with one curve and perhaps a factor.
+    /// A number, or a table with one curve and an optional factor.
     pub(super) fn function(&mut self, node: &Node, label: &str) -> Option<Function> {
         if !matches!(node.value, Value::Table(_)) {
             let wanted = "a number, or a table such as { linear = [1, 0] }";
@@ -19,7 +24,7 @@ impl Reader<'_> {
             }
             return self.number(node, label).map(Function::constant);
         }
-        let fields = self.table(node, node.spot, label.to_owned(), keys::FUNCTION);
+        let fields = self.table(node, node.spot, label.to_owned(), FUNCTION);
         let factor = match fields.get("factor") {
             Some(n) => self.number(n, "factor")?,
             None => 1.0,
@@ -27,16 +32,16 @@ impl Reader<'_> {
         let mut curves = fields
             .entries()
             .iter()
-            .filter(|e| e.key.text != "factor" && keys::FUNCTION.contains(&e.key.text.as_str()));
+            .filter(|e| e.key.text != "factor" && FUNCTION.contains(&e.key.text.as_str()));
         let (first, more) = (curves.next(), curves.next());
         if let Some(more) = more {
             let message = format!("`{label}` has two curves");
-            self.sources.error(more.key.spot, "model/exclusive", message, "give one of them");
+            self.texts.error(more.key.spot, "document/exclusive", message, "give one of them");
         }
         let Some(entry) = first else {
             let message = format!("`{label}` has no curve");
             let help = "give one of: constant, linear, ends, polynomial, spline, lines";
-            self.sources.error(node.spot, "model/missing", message, help);
+            self.texts.error(node.spot, "document/missing", message, help);
             return None;
         };
         let value = &entry.node;
@@ -50,7 +55,7 @@ impl Reader<'_> {
                 Curve::Polynomial(Polynomial::from_ascending(self.numbers(value, "polynomial")?))
             }
             "ends" => {
-                // From -1 to 1, through 0 with a slope of its own on either side.
+                // From -1 to 1 through 0, with one slope on each side.
                 let [low, high] = self.some::<2>(value, "ends")?;
                 let ends = PiecewiseLinear::new(vec![-1.0, 0.0, 1.0], vec![low, 0.0, high]);
                 Curve::PiecewiseLinear(self.through(value, ends)?)
@@ -79,7 +84,7 @@ impl Reader<'_> {
                     _ => node.spot,
                 };
                 let help = "give pairs [x, y] with x increasing";
-                self.sources.error(spot, "model/knots", error.to_string(), help);
+                self.texts.error(spot, "document/knots", error.to_string(), help);
                 None
             }
         }
@@ -87,7 +92,7 @@ impl Reader<'_> {
 
     /// A table with slopes or with the coefficients of a polynomial.
     pub(super) fn several(&mut self, node: &Node, label: &str) -> Option<FunctionOfSeveral> {
-        let fields = self.table(node, node.spot, label.to_owned(), keys::SEVERAL);
+        let fields = self.table(node, node.spot, label.to_owned(), SEVERAL);
         if let Some(slopes) = fields.get("slopes") {
             let slopes = self.numbers(slopes, "slopes")?;
             let intercept = match fields.get("intercept") {
@@ -99,9 +104,9 @@ impl Reader<'_> {
         let (Some(dimension), Some(order), Some(given)) =
             (fields.get("dimension"), fields.get("order"), fields.get("coefficients"))
         else {
-            let message = format!("`{label}` has neither slopes nor a polynomial");
+            let message = format!("`{label}` has neither `slopes` nor a polynomial");
             let help = "give `slopes` (and `intercept`), or `dimension`, `order`, `coefficients`";
-            self.sources.error(node.spot, "model/missing", message, help);
+            self.texts.error(node.spot, "document/missing", message, help);
             return None;
         };
         let dimension = self.count(dimension, "dimension")?;
@@ -120,14 +125,14 @@ impl Reader<'_> {
                     }
                     _ => "use at most 16 variables, order 64 and a million terms".to_owned(),
                 };
-                self.sources.error(given.spot, "model/length", message, help);
+                self.texts.error(given.spot, "document/length", message, help);
                 None
             }
         }
     }
 }
 
-/// The same law with its argument and its value counted in other units: s·f(x / r).
+/// The same function with argument and value in other units: s·f(x / r).
 pub(super) fn rescaled(function: Function, argument: f64, value: f64) -> Function {
     let Function { factor, curve } = function;
     if argument == 1.0 && value == 1.0 {

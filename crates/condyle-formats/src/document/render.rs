@@ -1,12 +1,12 @@
-//! Diagnostics with the line that they are about, and a caret.
+//! Diagnostics shown with their line of the text and a caret.
 
 use condyle_diagnostics::Diagnostic;
 use std::fmt::Write;
 
-/// How much of a line is shown, in letters.
+/// How many characters of a line are shown.
 const WIDTH: usize = 100;
 
-/// Each diagnostic as `name:line:column: message`, its line of the text, a caret and the remedy.
+/// Each diagnostic as `name:line:column: message`, its line of the text, a caret and its help.
 ///
 /// ```
 /// use condyle_formats::{Diagnostic, Place, document};
@@ -46,7 +46,7 @@ pub fn render(name: &str, text: &str, said: &[Diagnostic]) -> String {
     out
 }
 
-/// How many letters the thing at a column has: a text in quotes, a word, or one letter.
+/// The length of what stands at a column: a string, a word, or one character.
 fn word(line: &str, column: usize) -> usize {
     let mut letters = line.chars().skip(column);
     match letters.next() {
@@ -70,7 +70,7 @@ fn word(line: &str, column: usize) -> usize {
     }
 }
 
-/// Without letters that would move a terminal's cursor.
+/// The text without control characters, which could move a terminal's cursor.
 fn plain(text: &str) -> String {
     let shown = |c: char| match c {
         '\t' => ' ',

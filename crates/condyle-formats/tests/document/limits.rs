@@ -15,7 +15,8 @@ const POINTS: &str = "points = [{ direction = [1, 1, 0] }, { direction = [1, 0, 
 fn three_angles_are_held_by_swing_and_twist() {
     let text = format!(
         "{HEAD}[segment.s]\n[joint_set.j.coordinate.a]\n[joint_set.j.coordinate.b]\n\
-         [joint_set.j.coordinate.c]\n[joint_set.j.component.k.cone]\nangles = [\"a\", \"b\", \"c\"]\n\
+         [joint_set.j.coordinate.c]\n[joint_set.j.component.k.cone]\nangles = [\"a\", \"b\", \
+         \"c\"]\n\
          order = \"zyx\"\ntwist = [-30, 20]\n{POINTS}\
          [joint_set.j.component.u.rotate]\nangle = \"k\"\naxis = [0, 0, 1]\n\
          [joint_set.j.component.v.rotate]\nangle = \"k.2\"\naxis = [0, 1, 0]\n\
@@ -71,7 +72,8 @@ fn the_points_of_the_pair_that_is_due_touch() {
          [joint_set.j.component.before.rotate]\nangle = \"lift\"\naxis = [0, 0, 1]\n\
          [joint_set.j.component.touch.contact]\nsegment = \"blade\"\nsurface = \"ribs\"\n\
          at = [0.01, 0.05, 0]\nturn = [0, 30, 10]\norder = \"zyx\"\nradii = [0.15, 0.2, 0.14]\n\
-         axis = [0, 2, 0]\nbefore = \"before\"\ndrivers = [\"lift\", \"slide\"]\nin = [\"deg\", \"mm\"]\n\
+         axis = [0, 2, 0]\nbefore = \"before\"\ndrivers = [\"lift\", \"slide\"]\nin = [\"deg\", \
+         \"mm\"]\n\
          pairs = [{{ first = [0.08, 0.0, -0.01], second = [0.07, -0.1, -0.01], at = [0, 0] }}, \
          {{ first = [0.09, 0.01, -0.01], second = [0.06, -0.11, -0.01], at = [40, 25] }}]\n\
          [joint_set.j.output]\nblade = [\"before\", \"touch\"]\n"
@@ -124,15 +126,15 @@ fn every_reason_against_a_cone_has_its_place() {
         ),
         (
             format!("rest = [1, 0, 0]\ntwist = [-7, 7]\npoints = [{corners}]"),
-            "line 8, column 9: a bound of twist lies beyond a full turn",
+            "line 8, column 9: a twist limit is beyond a full turn",
         ),
         (
             format!("rest = [1, 0, 0]\npoints = [{corners}, {{ direction = [-1, 1, 0] }}]"),
-            "line 8, column 93: points 3 and 4 point opposite ways",
+            "line 8, column 93: points 3 and 4 have opposite directions",
         ),
         (
             format!("rest = [1, 0, 0]\npoints = [{corners}, {{ direction = [-1, 0, 0] }}]"),
-            "line 8, column 93: point 4 lies opposite to the rest direction",
+            "line 8, column 93: point 4 is opposite to the rest direction",
         ),
     ];
     for (keys, expected) in cases {

@@ -329,7 +329,10 @@ fn a_law_is_not_mirrored_unless_both_sides_are_written() {
     let head = "mirror = { plane = \"z\", from = \"_r\", to = \"_l\" }\n";
     let found = errors(&format!("{head}{}", side("r")));
     assert_eq!(found.len(), 1, "{found:?}");
-    assert!(found[0].starts_with("line 6, column 30: the user's law `ride` cannot be mirrored"));
+    assert!(found[0].starts_with(
+        "line 6, column 30: the custom component `ride` cannot be \
+    mirrored"
+    ));
     let both = format!("condyle = 1\nkind = \"model\"\n{head}{}{}", side("r"), side("l"));
     assert_eq!(read(&both).segments().len(), 2);
 }

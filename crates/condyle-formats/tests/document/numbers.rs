@@ -7,7 +7,8 @@ const HEAD: &str = "condyle = 1\nkind = \"model\"\n";
 #[test]
 fn a_number_is_a_product_of_numbers_and_constants() {
     let text = format!(
-        "{HEAD}constants = {{ stature = 1.75, thigh = \"0.245 * $stature\", twice = \"2*$thigh\" }}\n\
+        "{HEAD}constants = {{ stature = 1.75, thigh = \"0.245 * $stature\", twice = \"2*$thigh\" \
+         }}\n\
          [segment.a]\nat = [\"$thigh\", \"-$thigh * 2\", \" - 0.5 * $twice * $stature \"]\n\
          joint_at = [\"2 * 3\", \"1e-3*4\", \"-.5 * 2\"]\n"
     );
@@ -24,7 +25,8 @@ fn a_number_is_a_product_of_numbers_and_constants() {
 fn a_number_is_a_sum_of_products() {
     let text = format!(
         "{HEAD}constants = {{ thigh = 0.4, height = \"$thigh + 0.0108\" }}\n\
-         [segment.a]\nat = [\"-$thigh - 0.0108\", \"$height - 2 * $thigh + 1\", \"1e-3 * 1 - -2\"]\n"
+         [segment.a]\nat = [\"-$thigh - 0.0108\", \"$height - 2 * $thigh + 1\", \"1e-3 * 1 - \
+         -2\"]\n"
     );
     let at = read(&text).segments()[0].joint_in_parent.translation.to_array();
     let expected = [-0.4108, 0.4108 - 0.8 + 1.0, 2.001];
@@ -34,7 +36,8 @@ fn a_number_is_a_sum_of_products() {
 #[test]
 fn the_including_document_has_the_last_word_on_constants() {
     let part = format!(
-        "{HEAD}constants = {{ stature = 1.75, thigh = \"0.2 * $stature\" }}\n[segment.a]\nat = [\"$thigh\", 0, 0]\n"
+        "{HEAD}constants = {{ stature = 1.75, thigh = \"0.2 * $stature\" }}\n[segment.a]\nat = \
+         [\"$thigh\", 0, 0]\n"
     );
     let text = format!("{HEAD}include = [\"part.toml\"]\nconstants = {{ stature = 2 }}\n");
     let read = condyle_formats::document::read(&text, &mut |_| Ok(part.clone())).unwrap();
@@ -45,24 +48,29 @@ fn the_including_document_has_the_last_word_on_constants() {
 #[test]
 fn what_is_no_product_is_refused_once() {
     let found = errors(
-        "constants = { a = \"$b\", b = 2, c = \"$c\" }\n[segment.s]\nat = [\"$a\", \"2 * -3\", \"$ b\"]\n\
+        "constants = { a = \"$b\", b = 2, c = \"$c\" }\n[segment.s]\nat = [\"$a\", \"2 * -3\", \"$ \
+         b\"]\n\
          joint_at = [\"inf * 2\", \"2\", \"$\"]\n",
     );
-    let product = "(write a product of them, such as \"0.245 * $stature\")";
+    let product = "(write a product of numbers and constants, such as \"0.245 * $stature\")";
     assert_eq!(
         found,
         [
-            "line 3, column 19: constant `$b` is given further down (move it up: a constant may use \
-             those above it)"
+            "line 3, column 19: constant `$b` is defined further down (move it up: a constant may \
+             use only those above it)"
                 .to_owned(),
-            "line 3, column 36: constant `$c` is given further down (move it up: a constant may use \
-             those above it)"
+            "line 3, column 36: constant `$c` is defined further down (move it up: a constant may \
+             use only those above it)"
                 .to_owned(),
             format!("line 5, column 13: `-3` is neither a number nor a constant {product}"),
-            "line 5, column 23: unknown constant `$ b` (name it in the table `constants`)".to_owned(),
+            "line 5, column 23: unknown constant `$ b` (define it in the table \
+             `constants`)"
+                .to_owned(),
             format!("line 6, column 13: `inf` is neither a number nor a constant {product}"),
-            "line 6, column 24: `joint_at` is a text (give a number)".to_owned(),
-            "line 6, column 29: unknown constant `$` (name it in the table `constants`)".to_owned(),
+            "line 6, column 24: `joint_at` is a string (give a number)".to_owned(),
+            "line 6, column 29: unknown constant `$` (define it in the table \
+             `constants`)"
+                .to_owned(),
         ]
     );
 }

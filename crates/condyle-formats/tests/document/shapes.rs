@@ -138,7 +138,8 @@ fn a_law_gets_its_parameters_as_they_are() {
 #[test]
 fn keys_of_other_joints_are_refused() {
     let found = errors(
-        "[segment.s]\n[joint.a]\ntype = \"scale\"\nsegment = \"s\"\naxes = [[1, 0, 0]]\nvolume = true\n\
+        "[segment.s]\n[joint.a]\ntype = \"scale\"\nsegment = \"s\"\naxes = [[1, 0, 0]]\nvolume = \
+         true\n\
          pitch = 1\n[joint.b]\ntype = \"curve\"\nsegment = \"s\"\nforward = [1, 0, 0]\n\
          [joint.c]\ntype = \"scale\"\nsegment = \"s\"\nvolume = true\n\
          [joint.d]\ntype = \"ellipsoid\"\nsegment = \"s\"\nsurface_axis = \"norml\"\n\
@@ -147,18 +148,19 @@ fn keys_of_other_joints_are_refused() {
     assert_eq!(
         found,
         [
-            "line 8, column 10: `axes` stand alone (give `axes`; or one `axis`, with or without \
+            "line 8, column 10: `axes` excludes `axis` and `volume` (give `axes`; or one `axis`, \
+             with or without \
              `volume`)",
-            "line 9, column 1: a scale joint has no `pitch` (leave it away)",
-            "line 10, column 8: [joint.b] has no `path` (give three lists of [parameter, place]: for \
+            "line 9, column 1: a scale joint has no `pitch` (omit it)",
+            "line 10, column 8: [joint.b] has no `path` (give three lists of [parameter, place]: \
+             for \
              x, y and z)",
-            "line 13, column 11: `forward` stands without `up` (give both: the axis that follows the \
-             curve and the one that stays up; or neither, for no turn)",
-            "line 14, column 8: [joint.c] has no `axis` (give the axis along which it grows while it \
-             thins)",
+            "line 13, column 11: `forward` is given without `up` (give both: the axis along the \
+             curve and the axis that stays up; or neither, for no turn)",
+            "line 14, column 8: [joint.c] has no `axis` (give the axis of the stretch)",
             "line 18, column 8: [joint.d] has no `radii` (give three half axes in metres)",
-            "line 21, column 16: `surface_axis` is `norml` (did you mean \"normal\"?)",
-            "line 24, column 8: a coordinate of kind scale has no unit `mm` (leave it away)",
+            "line 21, column 16: unknown value `norml` of `surface_axis` (did you mean `normal`?)",
+            "line 24, column 8: a coordinate of kind scale has no unit `mm` (omit it)",
         ]
     );
 }

@@ -16,9 +16,10 @@ fn many_errors_come_at_once_in_the_order_of_the_text() {
         found,
         [
             "line 3, column 1: unknown key `nmae` (did you mean `name`?)",
-            "line 5, column 10: `parent` is a number (give a text)",
+            "line 5, column 10: `parent` is a number (give a string)",
             "line 6, column 6: `at` has 2 numbers (give 3)",
-            "line 8, column 10: unknown segment `zz` (name a segment of this model; omit it for the \
+            "line 8, column 10: unknown segment `zz` (name a segment of this model; omit it for \
+             the \
              world)",
             "line 10, column 8: unknown type of joint `hing` (did you mean `hinge`?)",
         ]
@@ -77,7 +78,8 @@ fn ports_are_checked_by_type_and_name() {
     let found = errors(
         "[segment.s]\n[joint_set.hip.coordinate.flexion]\n[joint_set.knee.component.t.rotate]\n\
          angle = \"flexion\"\naxis = [0, 0, 1]\n[joint_set.knee.component.u.product]\n\
-         factors = [\"hip.flexion\", \"t.2\", \"hip.flexoin\"]\n[joint_set.knee.output]\nz = \"t\"\n",
+         factors = [\"hip.flexion\", \"t.2\", \"hip.flexoin\"]\n[joint_set.knee.output]\nz = \
+         \"t\"\n",
     );
     assert_eq!(
         found,
@@ -85,8 +87,8 @@ fn ports_are_checked_by_type_and_name() {
             "line 6, column 9: unknown name `flexion` (did you mean `hip.flexion`?)",
             "line 9, column 12: `hip.flexion` is a scalar, not a transform (name a component such \
              as rotate, translate or product)",
-            "line 9, column 27: `t.2` asks for an output that is not there (its outputs are \
-             counted from 1 to 1)",
+            "line 9, column 27: `t.2` names an output that does not exist (its outputs are \
+             numbered from 1 to 1)",
             "line 9, column 34: unknown name `hip.flexoin` (did you mean `hip.flexion`?)",
             "line 11, column 1: unknown segment `z` (name a segment of this model; omit it for the \
              world)",
@@ -97,7 +99,7 @@ fn ports_are_checked_by_type_and_name() {
 #[test]
 fn the_head_says_what_a_document_is() {
     let one = |text: &str| try_read(text).unwrap_err()[0].to_string();
-    assert!(one("").contains("begin it with the lines `condyle = 1`"));
+    assert!(one("").contains("begin with the lines `condyle = 1`"));
     assert!(one("condyle = 2").contains("version of the format"));
     assert!(one("condyle = 1").contains("kinds are: `model`, `limit`"));
     assert!(one("condyle = 1\nkind = \"limit\"").contains("of kind `limit`, not a model"));
@@ -148,9 +150,9 @@ fn what_reads_a_broken_component_is_not_blamed() {
     assert_eq!(
         found,
         [
-            "line 5, column 10: `angles` has 1 names (give three angles, or two where the bone does \
-             not turn about itself)",
-            "line 8, column 10: 0 points enclose nothing (give at least 3, in their order around \
+            "line 5, column 10: `angles` has 1 names (give three angles, or two if the bone does \
+             not twist)",
+            "line 8, column 10: 0 points do not enclose an area (give at least 3, in order around \
              `rest`)",
         ]
     );
@@ -200,7 +202,8 @@ proptest! {
     }
 
     #[test]
-    fn any_text_is_read_without_a_panic(body in "([a-z\\[\\]{}=.,\"'#\n $0-9-]|segment|joint_set|at = ){0,80}") {
+    fn any_text_is_read_without_a_panic(body in "([a-z\\[\\]{}=.,\"'#\n \
+    $0-9-]|segment|joint_set|at = ){0,80}") {
         let _ = try_read(&format!("{HEAD}{body}"));
     }
 }

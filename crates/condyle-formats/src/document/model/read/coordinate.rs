@@ -1,14 +1,15 @@
-//! Coordinates: what they measure and where they may go.
+//! Coordinates: what they measure, and their limits.
 
-use super::super::draft::CoordinateDraft;
-use super::super::fields::{Fields, Reader};
-use super::super::keys;
-use super::super::tree::{Entry, Node, Value};
-use condyle_diagnostics::nearest;
+use super::ModelReader;
+use crate::document::fields::Fields;
+use crate::document::model::draft::CoordinateDraft;
+use crate::document::model::keys;
+use crate::document::tree::{Entry, Node, Value};
+use condyle_diagnostics::did_you_mean;
 use condyle_model::{CoordinateKind, Range};
 
-impl Reader<'_> {
-    /// The properties of a coordinate, on top of what is known of it.
+impl ModelReader<'_> {
+    /// The properties of a coordinate; `free_kind` if its kind may be given.
     pub(in super::super) fn coordinate(
         &mut self,
         owner: &str,
@@ -25,17 +26,15 @@ impl Reader<'_> {
                 Some(found) if free_kind || found == coordinate.kind => coordinate.kind = found,
                 Some(_) => {
                     let message = format!("this coordinate is a {}", coordinate.kind.name());
-                    let help = "leave `kind` away: the joint's type says it";
-                    self.sources.error(kind.spot, "model/kind", message, help);
+                    let help = "omit `kind`: the type of the joint determines it";
+                    self.texts.error(kind.spot, "model/kind", message, help);
                 }
                 None => {
                     let names = kinds.map(CoordinateKind::name);
-                    let help = match nearest(&kind.text, names) {
-                        Some(near) => format!("did you mean `{near}`?"),
-                        None => format!("kinds are: {}", names.join(", ")),
-                    };
+                    let all = || format!("kinds are: {}", names.join(", "));
+                    let help = did_you_mean(&kind.text, names, all);
                     let message = format!("unknown kind of coordinate `{}`", kind.text);
-                    self.sources.error(kind.spot, "model/kind", message, help);
+                    self.texts.error(kind.spot, "model/kind", message, help);
                 }
             }
         }
@@ -49,8 +48,8 @@ impl Reader<'_> {
                 let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
                 if (length - 1.0).abs() > 1e-6 {
                     let message = format!("this quaternion has length {length}");
-                    let help = "give x, y, z, w of length 1; no turn is [0, 0, 0, 1]";
-                    self.sources.error(node.spot, "model/orientation", message, help);
+                    let help = "give x, y, z, w of length 1; the identity is [0, 0, 0, 1]";
+                    self.texts.error(node.spot, "model/orientation", message, help);
                 }
                 coordinate.default = q;
             }
@@ -58,7 +57,7 @@ impl Reader<'_> {
         if let Some(node) = fields.get("range") {
             if orientation {
                 let message = "an orientation has no range";
-                self.sources.error(node.spot, "model/range", message, "leave it away");
+                self.texts.error(node.spot, "model/range", message, "omit it");
             } else {
                 self.range(node, unit, &mut coordinate.range);
             }
@@ -72,7 +71,7 @@ impl Reader<'_> {
         coordinate
     }
 
-    /// What default and range of a coordinate are multiplied with.
+    /// The factor of a coordinate's default and range.
     fn unit(&mut self, fields: &Fields<'_>, kind: CoordinateKind) -> f64 {
         const DEGREE: f64 = std::f64::consts::PI / 180.0;
         let usual = match kind {
@@ -96,10 +95,10 @@ impl Reader<'_> {
         let units: Vec<&str> = known.iter().map(|(unit, _)| *unit).collect();
         let message = format!("a coordinate of kind {} has no unit `{}`", kind.name(), name.text);
         let help = match units[..] {
-            [] => "leave it away".to_owned(),
+            [] => "omit it".to_owned(),
             _ => format!("units are: {}", units.join(", ")),
         };
-        self.sources.error(name.spot, "model/unit", message, help);
+        self.texts.error(name.spot, "document/unit", message, help);
         usual
     }
 
@@ -107,9 +106,9 @@ impl Reader<'_> {
         let sides = self.list(node, "range").unwrap_or_default();
         let [low, high] = sides else {
             if matches!(node.value, Value::List(_)) {
-                let message = format!("`range` has {} sides", sides.len());
-                let help = "give [lowest, highest]; a side may be \"none\"";
-                self.sources.error(node.spot, "model/length", message, help);
+                let message = format!("`range` has {} entries", sides.len());
+                let help = "give [lower, upper]; either may be \"none\"";
+                self.length(node.spot, message, help);
             }
             return;
         };

@@ -1,33 +1,28 @@
-//! Contacts: a bone that is put on an ellipsoid.
+//! Contacts: a bone that glides on an ellipsoid.
 
-use super::super::fields::{Fields, Reader};
-use super::super::keys;
-use super::super::law::Law;
-use super::super::source::Name;
-use super::super::tree::{Node, Value};
 use super::FRAME;
+use super::ModelReader;
 use super::component::DIRECTION;
+use crate::document::fields::Fields;
+use crate::document::model::blueprint::Blueprint;
+use crate::document::model::keys;
+use crate::document::texts::Name;
+use crate::document::tree::{Node, Value};
 use condyle_math::{Affine, Vec3};
 use condyle_model::component::{ContactPair, Gliding};
 
-impl Reader<'_> {
-    pub(super) fn contact(&mut self, fields: &Fields<'_>) -> Option<Law> {
+impl ModelReader<'_> {
+    pub(super) fn contact(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
         let mut named = |key: &str, wanted: &str| -> Option<Name> {
-            match fields.get(key) {
-                Some(node) => self.text(node, key),
-                None => {
-                    self.missing(fields, key, wanted);
-                    None
-                }
-            }
+            self.required(fields, key, wanted).and_then(|node| self.text(node, key))
         };
         let segment = named("segment", "the segment that glides");
         let surface = named("surface", "the segment that carries the ellipsoid");
         let pose = self.rigid(fields);
-        let radii = self.needed(fields, "radii", "three half axes in metres");
-        let axis = self.needed(fields, "axis", DIRECTION);
+        let radii = self.required_vector(fields, "radii", "three half axes in metres");
+        let axis = self.required_vector(fields, "axis", DIRECTION);
         let pairs = self.contact_pairs(fields);
-        // What is wrong is found by trying one thing after the other beside things that are right.
+        // Each parameter is tried alone beside valid ones, to report errors at their places.
         let stand_in = ContactPair { first: Vec3::X, second: Vec3::Y, at: [0.0; 2] };
         let unit = Vec3::new(1.0, 1.0, 1.0);
         let try_one = |radii: Vec3, axis: Vec3, pairs: &[ContactPair]| {
@@ -46,7 +41,7 @@ impl Reader<'_> {
                 Value::List(list) => &list[..],
                 _ => &[],
             };
-            // The last of the shortest list that will not do; with none, the list itself.
+            // The last pair of the shortest invalid list; if that is empty, the list itself.
             let first = (pairs.len().min(1)..=pairs.len())
                 .find_map(|n| try_one(unit, Vec3::Z, &pairs[..n]).map(|why| (n, why)));
             if let Some((n, why)) = first {
@@ -56,15 +51,15 @@ impl Reader<'_> {
         }
         for (spot, why) in &wrong {
             let said = why.to_string();
-            let (message, help) = said.split_once(": ").unwrap_or((&said, "give other numbers"));
-            self.sources.error(*spot, "model/contact", message, help);
+            let (message, help) = said.split_once(": ").unwrap_or((&said, "change these numbers"));
+            self.texts.error(*spot, "model/contact", message, help);
         }
-        let law = Gliding::new(pose?, radii?, axis?, pairs?.1).ok()?;
+        let gliding = Gliding::new(pose?, radii?, axis?, pairs?.1).ok()?;
         let before = fields.get("before").is_some();
-        Some(Law::Contact { segment: segment?, surface: surface?, before, law })
+        Some(Blueprint::Contact { segment: segment?, surface: surface?, before, gliding })
     }
 
-    /// A frame that neither stretches nor shears.
+    /// A frame without stretch or shear.
     fn rigid(&mut self, fields: &Fields<'_>) -> Option<Affine> {
         let frame = self.frame(fields, FRAME);
         let m = frame.linear;
@@ -73,19 +68,16 @@ impl Reader<'_> {
         if off.into_iter().all(|x| x.abs() < 1e-6) && m.determinant() > 0.0 {
             return Some(frame);
         }
-        // A matrix with the wrong number of rows was named already and left nothing behind.
+        // A matrix with the wrong number of rows was reported and is the identity here.
         let spot = fields.get("matrix").map_or(fields.spot, |node| node.spot);
         let help = "give rows of length 1 at right angles, or three angles as `turn`";
-        self.sources.error(spot, "model/rotation", "`matrix` is not a rotation", help);
+        self.texts.error(spot, "model/rotation", "`matrix` is not a rotation", help);
         None
     }
 
     fn contact_pairs<'t>(&mut self, fields: &Fields<'t>) -> Option<(&'t Node, Vec<ContactPair>)> {
-        let Some(node) = fields.get("pairs") else {
-            let wanted = "points that touch, such as [{ first = [0, 0.02, -0.1], second = ... }]";
-            self.missing(fields, "pairs", wanted);
-            return None;
-        };
+        let wanted = "points that touch, such as [{ first = [0, 0.02, -0.1], second = ... }]";
+        let node = self.required(fields, "pairs", wanted)?;
         let units = self.driver_units(fields);
         let list = self.list(node, "pairs")?;
         let pairs: Vec<Option<ContactPair>> = list
@@ -94,17 +86,13 @@ impl Reader<'_> {
                 let label = format!("{}.pairs", fields.label);
                 let fields = self.table(node, node.spot, label, keys::CONTACT_PAIR);
                 let wanted = "a point of the segment in metres";
-                let first = self.needed(&fields, "first", wanted);
-                let second = self.needed(&fields, "second", wanted);
+                let first = self.required_vector(&fields, "first", wanted);
+                let second = self.required_vector(&fields, "second", wanted);
                 let at = match fields.get("at") {
                     Some(node) => self.driver_values(node, units),
                     None if list.len() < 2 => Some([0.0; 2]),
                     None => {
-                        self.missing(
-                            &fields,
-                            "at",
-                            "the values of the drivers at which it touches",
-                        );
+                        self.missing(&fields, "at", "the values of the drivers for this pair");
                         None
                     }
                 };
@@ -114,21 +102,20 @@ impl Reader<'_> {
         Some((node, pairs.into_iter().collect::<Option<Vec<_>>>()?))
     }
 
-    /// The values of one or two drivers; a second that is left away is 0.
+    /// The values of one or two drivers; the second is 0 if omitted.
     fn driver_values(&mut self, node: &Node, units: [f64; 2]) -> Option<[f64; 2]> {
         match self.numbers(node, "at")?[..] {
             [x] => Some([units[0] * x, 0.0]),
             [x, y] => Some([units[0] * x, units[1] * y]),
             ref list => {
                 let message = format!("`at` has {} numbers", list.len());
-                let help = "give one for each driver, at most two";
-                self.sources.error(node.spot, "model/length", message, help);
+                self.length(node.spot, message, "give one for each driver, at most two");
                 None
             }
         }
     }
 
-    /// What the drivers' values are multiplied with: one unit for both, or a list of two.
+    /// The factors of the drivers' values: one unit for both, or a list of two.
     fn driver_units(&mut self, fields: &Fields<'_>) -> [f64; 2] {
         let Some(node) = fields.get("in") else { return [1.0; 2] };
         let Value::List(list) = &node.value else {
@@ -138,8 +125,7 @@ impl Reader<'_> {
             [x, y] => [x, y].map(|node| self.unit_of(node, "in").unwrap_or(1.0)),
             _ => {
                 let message = format!("`in` has {} units", list.len());
-                let help = "give one for both drivers, or a list of two";
-                self.sources.error(node.spot, "model/length", message, help);
+                self.length(node.spot, message, "give one for both drivers, or a list of two");
                 [1.0; 2]
             }
         }

@@ -1,13 +1,14 @@
-//! Markers, and the loops that tracking closes.
+//! Markers and loop closures.
 
-use super::super::draft::{ClosureDraft, ConditionDraft, Draft, Holder, MarkerDraft};
-use super::super::fields::{Fields, Reader};
-use super::super::keys;
-use super::super::tree::{Entry, Node};
 use super::FRAME;
+use super::ModelReader;
+use crate::document::fields::Fields;
+use crate::document::model::draft::{ClosureDraft, ConditionDraft, Draft, Holder, MarkerDraft};
+use crate::document::model::keys;
+use crate::document::tree::{Entry, Node};
 use condyle_math::{Affine, Vec3};
 
-impl Reader<'_> {
+impl ModelReader<'_> {
     pub(super) fn marker(&mut self, draft: &mut Draft, entry: &Entry) {
         let label = format!("marker.{}", entry.key.text);
         let fields = self.table(&entry.node, entry.key.spot, label, keys::MARKER);
@@ -53,9 +54,9 @@ impl Reader<'_> {
             }
             (None, None, Some(node)) if distance.is_none() => Some(self.coupling(node, &label)),
             _ => {
-                let message = format!("[{label}] does not say one condition");
+                let message = format!("[{label}] must have exactly one condition");
                 let help = "give `points`, `points` with `distance`, `frames` or `coupling`";
-                self.sources.error(name.spot, "model/closure", message, help);
+                self.texts.error(name.spot, "model/closure", message, help);
                 None
             }
         };
@@ -69,7 +70,7 @@ impl Reader<'_> {
             [a, b] => Some([a, b]),
             list => {
                 let message = format!("`{label}` has {} entries", list.len());
-                self.sources.error(node.spot, "model/length", message, "give 2");
+                self.length(node.spot, message, "give 2");
                 None
             }
         }
@@ -77,13 +78,9 @@ impl Reader<'_> {
 
     fn coupling(&mut self, node: &Node, label: &str) -> Option<ConditionDraft> {
         let fields = self.table(node, node.spot, format!("{label}.coupling"), keys::COUPLING);
-        let mut found = keys::COUPLING.iter().map(|key| {
-            let node = fields.get(key);
-            if node.is_none() {
-                self.missing(&fields, key, "`follower`, `driver` and `function`");
-            }
-            node
-        });
+        let mut found = keys::COUPLING
+            .iter()
+            .map(|key| self.required(&fields, key, "`follower`, `driver` and `function`"));
         let (follower, driver, function) = (found.next()?, found.next()?, found.next()?);
         drop(found);
         let follower = self.text(follower?, "follower");

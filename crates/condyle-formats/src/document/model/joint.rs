@@ -1,34 +1,35 @@
-//! Plain joints in a few lines: each becomes a joint set of the same components as any other.
+//! Plain joints: each is expanded to a joint set of coordinates and components.
 
+use super::blueprint::Blueprint;
 use super::draft::{ComponentDraft, CoordinateDraft, Draft, OutputDraft};
-use super::fields::{Fields, Reader};
 use super::keys;
-use super::law::Law;
 use super::mirror::escaped;
-use super::source::Name;
-use super::tree::{Entry, Value};
-use condyle_diagnostics::nearest;
+use super::read::ModelReader;
+use crate::document::fields::Fields;
+use crate::document::texts::Name;
+use crate::document::tree::{Entry, Value};
+use condyle_diagnostics::did_you_mean;
 use condyle_math::function::Function;
 use condyle_math::{EulerOrder, Vec3};
 use condyle_model::component::Along;
 use condyle_model::{CoordinateKind, Range};
 use std::collections::HashSet;
 
-/// What a joint is made of.
+/// The coordinates and components of a plain joint.
 #[derive(Default)]
-struct Plan {
-    /// What its coordinates are called, and what they measure.
+struct Expansion {
+    /// Names and kinds of its coordinates.
     coordinates: Vec<(String, CoordinateKind)>,
-    /// Its components, the factor nearest to the parent first.
+    /// Its components, nearest to the parent first.
     parts: Vec<Part>,
 }
 
 /// One component of a joint, named for its first coordinate.
 struct Part {
     prefix: &'static str,
-    law: Law,
+    blueprint: Blueprint,
     inputs: Vec<Input>,
-    /// Whether it is a factor of the motion, not only what another one reads.
+    /// Whether it is a factor of the motion, or only an input of another part.
     moves: bool,
 }
 
@@ -37,79 +38,83 @@ enum Input {
     Part(usize),
 }
 
-impl Plan {
-    /// Adds a coordinate and the factor that it moves alone.
-    fn with(mut self, name: &str, kind: CoordinateKind, prefix: &'static str, law: Law) -> Self {
+impl Expansion {
+    /// Adds a coordinate and the factor that it drives.
+    fn with(
+        mut self,
+        name: &str,
+        kind: CoordinateKind,
+        prefix: &'static str,
+        blueprint: Blueprint,
+    ) -> Self {
         let inputs = vec![Input::Coordinate(self.coordinates.len())];
         self.coordinates.push((name.to_owned(), kind));
-        self.parts.push(Part { prefix, law, inputs, moves: true });
+        self.parts.push(Part { prefix, blueprint, inputs, moves: true });
         self
     }
 
     fn turn(self, name: &str, axis: Vec3) -> Self {
-        self.with(name, CoordinateKind::Rotation, "about", Law::Rotate(axis))
+        self.with(name, CoordinateKind::Rotation, "about", Blueprint::Rotate(axis))
     }
 
     fn slide(self, name: &str, axis: Vec3) -> Self {
-        self.with(name, CoordinateKind::Translation, "along", Law::Translate(axis))
+        self.with(name, CoordinateKind::Translation, "along", Blueprint::Translate(axis))
     }
 
     fn ball(self) -> Self {
-        self.with("orientation", CoordinateKind::Orientation, "about", Law::Ball)
+        self.with("orientation", CoordinateKind::Orientation, "about", Blueprint::Ball)
     }
 
     fn turns(self, axes: [Vec3; 3]) -> Self {
-        ["first", "second", "third"].iter().zip(axes).fold(self, |plan, (n, a)| plan.turn(n, a))
+        ["first", "second", "third"]
+            .iter()
+            .zip(axes)
+            .fold(self, |expansion, (n, a)| expansion.turn(n, a))
     }
 
-    /// A turn, and a slide along the same axis by so much for each whole turn.
+    /// A turn, and a slide along the same axis by `pitch` for each whole turn.
     fn screw(axis: Vec3, pitch: f64) -> Self {
-        let mut plan = Self::default().turn("angle", axis);
-        let law = Law::Map(vec![Function::linear(pitch / std::f64::consts::TAU, 0.0)]);
+        let mut expansion = Self::default().turn("angle", axis);
+        let blueprint = Blueprint::Map(vec![Function::linear(pitch / std::f64::consts::TAU, 0.0)]);
         let inputs = vec![Input::Coordinate(0)];
-        plan.parts.push(Part { prefix: "pitch_of", law, inputs, moves: false });
-        let (law, inputs) = (Law::Translate(axis), vec![Input::Part(1)]);
-        plan.parts.push(Part { prefix: "along", law, inputs, moves: true });
-        plan
+        expansion.parts.push(Part { prefix: "pitch_of", blueprint, inputs, moves: false });
+        let (blueprint, inputs) = (Blueprint::Translate(axis), vec![Input::Part(1)]);
+        expansion.parts.push(Part { prefix: "along", blueprint, inputs, moves: true });
+        expansion
     }
 
-    /// Three angles of one component.
-    fn glide(law: Law) -> Self {
+    /// One component with three angles.
+    fn glide(blueprint: Blueprint) -> Self {
         let kind = CoordinateKind::Rotation;
         let coordinates = ["about_x", "about_y", "about_z"].map(|name| (name.to_owned(), kind));
         let inputs = (0..3).map(Input::Coordinate).collect();
-        let parts = vec![Part { prefix: "on_surface", law, inputs, moves: true }];
+        let parts = vec![Part { prefix: "on_surface", blueprint, inputs, moves: true }];
         Self { coordinates: coordinates.to_vec(), parts }
     }
 }
 
-impl Reader<'_> {
+impl ModelReader<'_> {
     pub(super) fn joint(&mut self, draft: &mut Draft, entry: &Entry) {
         let set = entry.key.clone();
         let label = format!("joint.{}", set.text);
         let fields = self.table(&entry.node, set.spot, label.clone(), keys::JOINT);
         draft.sets.push(set.clone());
-        let Some(kind) = fields.get("type") else {
-            let types = format!("one of: {}", types().join(", "));
+        let wanted = format!("one of: {}", types().join(", "));
+        let Some(kind) = self.required(&fields, "type", &wanted) else {
             draft.broken.insert((set.text, String::new()));
-            return self.missing(&fields, "type", &types);
+            return;
         };
         let Some(kind) = self.text(kind, "type") else { return };
-        let segment = match fields.get("segment") {
-            Some(node) => self.text(node, "segment"),
-            None => {
-                self.missing(&fields, "segment", "the name of the segment that moves");
-                None
-            }
-        };
-        let Some(mut plan) = self.plan(&fields, &kind) else {
+        let segment = self.required(&fields, "segment", "the name of the segment that moves");
+        let segment = segment.and_then(|node| self.text(node, "segment"));
+        let Some(mut expansion) = self.expansion(&fields, &kind) else {
             draft.broken.insert((set.text, String::new()));
             return;
         };
         if let Some(node) = fields.get("coordinates") {
             let names = self.names(node, "coordinates").0;
-            if names.len() == plan.coordinates.len() {
-                for (coordinate, name) in plan.coordinates.iter_mut().zip(names) {
+            if names.len() == expansion.coordinates.len() {
+                for (coordinate, name) in expansion.coordinates.iter_mut().zip(names) {
                     coordinate.0 = name.text;
                 }
             } else {
@@ -117,27 +122,26 @@ impl Reader<'_> {
                     "`coordinates` has {} names, but a {} joint has {} coordinates",
                     names.len(),
                     kind.text,
-                    plan.coordinates.len()
+                    expansion.coordinates.len()
                 );
-                let help = format!("give {} names", plan.coordinates.len());
-                self.sources.error(node.spot, "model/length", message, help);
+                let help = format!("give {} names", expansion.coordinates.len());
+                self.length(node.spot, message, help);
             }
         }
         let given = fields.get("coordinate").map(|n| self.entries(n, "coordinate"));
         let given = given.unwrap_or_default();
         for entry in given {
-            if !plan.coordinates.iter().any(|(name, _)| *name == entry.key.text) {
-                let names: Vec<&str> = plan.coordinates.iter().map(|(n, _)| n.as_str()).collect();
-                let help = match nearest(&entry.key.text, names.iter().copied()) {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => format!("its coordinates are: {}", names.join(", ")),
-                };
+            if !expansion.coordinates.iter().any(|(name, _)| *name == entry.key.text) {
+                let names: Vec<&str> =
+                    expansion.coordinates.iter().map(|(n, _)| n.as_str()).collect();
+                let all = || format!("its coordinates are: {}", names.join(", "));
+                let help = did_you_mean(&entry.key.text, names.iter().copied(), all);
                 let message = format!("[{label}] has no coordinate `{}`", entry.key.text);
-                self.sources.error(entry.key.spot, "model/unknown-name", message, help);
+                self.texts.error(entry.key.spot, "model/unknown-name", message, help);
             }
         }
         let here = |text: String| Name { text, spot: set.spot };
-        for (name, kind) in &plan.coordinates {
+        for (name, kind) in &expansion.coordinates {
             let start = CoordinateDraft {
                 set: set.text.clone(),
                 name: here(name.clone()),
@@ -154,11 +158,11 @@ impl Reader<'_> {
             };
             draft.coordinates.push(coordinate);
         }
-        let names = part_names(&plan);
+        let names = part_names(&expansion);
         let mut factors = vec![];
-        for (part, name) in plan.parts.into_iter().zip(&names) {
+        for (part, name) in expansion.parts.into_iter().zip(&names) {
             let input = |input: &Input| match input {
-                Input::Coordinate(i) => escaped(&plan.coordinates[*i].0),
+                Input::Coordinate(i) => escaped(&expansion.coordinates[*i].0),
                 Input::Part(i) => escaped(&names[*i]),
             };
             if part.moves {
@@ -167,7 +171,7 @@ impl Reader<'_> {
             draft.components.push(ComponentDraft {
                 set: set.text.clone(),
                 name: here(name.clone()),
-                law: part.law,
+                blueprint: part.blueprint,
                 ports: part.inputs.iter().map(|i| here(input(i))).collect(),
             });
         }
@@ -179,16 +183,14 @@ impl Reader<'_> {
         }
     }
 
-    /// What a joint of that type is made of.
-    fn plan(&mut self, fields: &Fields<'_>, kind: &Name) -> Option<Plan> {
+    /// What a joint of that type expands to.
+    fn expansion(&mut self, fields: &Fields<'_>, kind: &Name) -> Option<Expansion> {
         let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
         let Some((_, used)) = keys::JOINT_TYPES.iter().find(|(name, _)| *name == kind.text) else {
-            let help = match nearest(&kind.text, types()) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => format!("types are: {}", types().join(", ")),
-            };
+            let all = || format!("types are: {}", types().join(", "));
+            let help = did_you_mean(&kind.text, types(), all);
             let message = format!("unknown type of joint `{}`", kind.text);
-            self.sources.error(kind.spot, "model/joint-type", message, help);
+            self.texts.error(kind.spot, "model/joint-type", message, help);
             return None;
         };
         for entry in fields.entries() {
@@ -196,87 +198,88 @@ impl Reader<'_> {
             let known = keys::JOINT.contains(&key);
             if known && !used.contains(&key) && !keys::JOINT_BASE.contains(&key) {
                 let message = format!("a {} joint has no `{key}`", kind.text);
-                self.sources.error(entry.key.spot, "model/unknown-key", message, "leave it away");
+                self.texts.error(entry.key.spot, "document/unknown-key", message, "omit it");
             }
         }
-        let plan = Plan::default();
+        let expansion = Expansion::default();
         let other = CoordinateKind::Other;
         Some(match kind.text.as_str() {
-            "hinge" => plan.turn("angle", self.axes::<1>(fields)[0]),
+            "hinge" => expansion.turn("angle", self.axes::<1>(fields)[0]),
             "universal" => {
                 let [first, second] = self.axes::<2>(fields);
-                plan.turn("first", first).turn("second", second)
+                expansion.turn("first", first).turn("second", second)
             }
-            "ball" => plan.ball(),
-            "euler" if fields.get("axes").is_some() => plan.turns(self.axes::<3>(fields)),
+            "ball" => expansion.ball(),
+            "euler" if fields.get("axes").is_some() => expansion.turns(self.axes::<3>(fields)),
             "euler" => {
-                let Some(node) = fields.get("order") else {
-                    self.missing(fields, "order", "an order such as \"zxy\", or three `axes`");
-                    return None;
-                };
+                let wanted = "an order such as \"zxy\", or three `axes`";
+                let node = self.required(fields, "order", wanted)?;
                 let order = self.order(node, "order")?;
-                plan.turns([0, 1, 2].map(|i| order.axis(i)))
+                expansion.turns([0, 1, 2].map(|i| order.axis(i)))
             }
             "prismatic" if fields.get("axis").is_some() => {
-                plan.slide("distance", self.axes::<1>(fields)[0])
+                expansion.slide("distance", self.axes::<1>(fields)[0])
             }
             "prismatic" => {
                 if fields.get("axes").is_none() {
                     self.missing(fields, "axis", "a direction such as [0, 1, 0], or `axes`");
-                    return None;
                 }
                 let axes = self.up_to_three(fields)?;
                 let names = ["first", "second", "third"];
-                names.iter().zip(axes).fold(plan, |plan, (name, a)| plan.slide(name, a))
+                names
+                    .iter()
+                    .zip(axes)
+                    .fold(expansion, |expansion, (name, a)| expansion.slide(name, a))
             }
             "planar" => {
                 let axes = match fields.get("axes") {
                     Some(_) => self.axes::<3>(fields),
                     None => [x, y, z],
                 };
-                plan.slide("x", axes[0]).slide("y", axes[1]).turn("turn", axes[2])
+                expansion.slide("x", axes[0]).slide("y", axes[1]).turn("turn", axes[2])
             }
             "free" => {
                 let order = fields.get("order").map(|n| self.order(n, "order"));
                 let order = order.unwrap_or(Some(EulerOrder::XYZ))?;
-                let plan = plan.slide("x", x).slide("y", y).slide("z", z);
+                let expansion = expansion.slide("x", x).slide("y", y).slide("z", z);
                 let ball = self.flag(fields.get("ball"), "ball", false);
                 if let Some(node) = fields.get("order").filter(|_| ball) {
-                    let message = "both `ball` and `order` are given";
-                    let help = "an orientation has no order: give one of them";
-                    self.sources.error(node.spot, "model/exclusive", message, help);
+                    self.exclusive(node, "ball", "order");
                 }
                 match ball {
-                    true => plan.ball(),
-                    false => plan.turns([0, 1, 2].map(|i| order.axis(i))),
+                    true => expansion.ball(),
+                    false => expansion.turns([0, 1, 2].map(|i| order.axis(i))),
                 }
             }
             "screw" => {
                 let axis = self.axes::<1>(fields)[0];
-                let Some(node) = fields.get("pitch") else {
-                    self.missing(fields, "pitch", "how far it goes in one full turn, in metres");
-                    return None;
-                };
-                Plan::screw(axis, self.number(node, "pitch")?)
+                let wanted = "how far it slides in one full turn, in metres";
+                let node = self.required(fields, "pitch", wanted)?;
+                Expansion::screw(axis, self.number(node, "pitch")?)
             }
-            "curve" => plan.with("parameter", other, "along", self.curve(fields)?),
+            "curve" => expansion.with("parameter", other, "along", self.curve(fields)?),
             "scale" if fields.get("axes").is_some() => {
                 if let Some(node) = fields.get("axis").or(fields.get("volume")) {
-                    let message = "`axes` stand alone";
+                    let message = "`axes` excludes `axis` and `volume`";
                     let help = "give `axes`; or one `axis`, with or without `volume`";
-                    self.sources.error(node.spot, "model/exclusive", message, help);
+                    self.texts.error(node.spot, "document/exclusive", message, help);
                 }
                 let axes = self.up_to_three(fields)?;
                 let names = ["first", "second", "third"];
-                names.iter().zip(axes).fold(plan, |plan, (name, axis)| {
-                    plan.with(name, CoordinateKind::Scale, "by", Law::Scale(Along::Axis(axis)))
+                names.iter().zip(axes).fold(expansion, |expansion, (name, axis)| {
+                    expansion.with(
+                        name,
+                        CoordinateKind::Scale,
+                        "by",
+                        Blueprint::Scale(Along::Axis(axis)),
+                    )
                 })
             }
-            "scale" => plan.with("factor", CoordinateKind::Scale, "by", self.scale(fields)?),
-            "shear" => plan.with("amount", other, "by", self.shear(fields)?),
-            "ellipsoid" => Plan::glide(self.ellipsoid(fields)?),
+            "scale" => expansion.with("factor", CoordinateKind::Scale, "by", self.scale(fields)?),
+            "shear" => expansion.with("amount", other, "by", self.shear(fields)?),
+            "ellipsoid" => Expansion::glide(self.ellipsoid(fields)?),
             // A weld.
-            _ => plan,
+            _ => expansion,
         })
     }
 
@@ -286,7 +289,7 @@ impl Reader<'_> {
         let axes: Vec<_> = list.iter().filter_map(|n| self.vector(n, "axes")).collect();
         if axes.is_empty() || axes.len() > 3 {
             let message = format!("`axes` has {} directions", axes.len());
-            self.sources.error(node.spot, "model/length", message, "give one to three");
+            self.length(node.spot, message, "give one to three");
             return None;
         }
         Some(axes)
@@ -295,14 +298,11 @@ impl Reader<'_> {
     /// `axis`, or exactly `N` `axes`; after an error z, so that the rest of the joint is read.
     fn axes<const N: usize>(&mut self, fields: &Fields<'_>) -> [Vec3; N] {
         let key = if N == 1 { "axis" } else { "axes" };
-        let Some(node) = fields.get(key) else {
-            let wanted = match N {
-                1 => "a direction such as [0, 0, 1]".to_owned(),
-                _ => format!("{N} directions"),
-            };
-            self.missing(fields, key, &wanted);
-            return [Vec3::Z; N];
+        let wanted = match N {
+            1 => "a direction such as [0, 0, 1]".to_owned(),
+            _ => format!("{N} directions"),
         };
+        let Some(node) = self.required(fields, key, &wanted) else { return [Vec3::Z; N] };
         if N == 1 {
             return [self.vector(node, key).unwrap_or(Vec3::Z); N];
         }
@@ -310,7 +310,7 @@ impl Reader<'_> {
         let axes: Vec<Option<Vec3>> = list.iter().map(|n| self.vector(n, key)).collect();
         if axes.len() != N && matches!(node.value, Value::List(_)) {
             let message = format!("`axes` has {} directions", axes.len());
-            self.sources.error(node.spot, "model/length", message, format!("give {N}"));
+            self.length(node.spot, message, format!("give {N}"));
         }
         std::array::from_fn(|i| axes.get(i).copied().flatten().unwrap_or(Vec3::Z))
     }
@@ -320,20 +320,20 @@ fn types() -> Vec<&'static str> {
     keys::JOINT_TYPES.iter().map(|(name, _)| *name).collect()
 }
 
-/// A name for each part that no coordinate and no part before it has.
-fn part_names(plan: &Plan) -> Vec<String> {
+/// A name for each part, unique among coordinates and parts.
+fn part_names(expansion: &Expansion) -> Vec<String> {
     let mut taken: HashSet<String> =
-        plan.coordinates.iter().map(|(name, _)| name.clone()).collect();
+        expansion.coordinates.iter().map(|(name, _)| name.clone()).collect();
     let name = |part: &Part| {
         let first = part.inputs.iter().find_map(|input| match input {
             Input::Coordinate(i) => Some(*i),
             Input::Part(_) => None,
         });
-        let mut name = format!("{}_{}", part.prefix, plan.coordinates[first.unwrap_or(0)].0);
+        let mut name = format!("{}_{}", part.prefix, expansion.coordinates[first.unwrap_or(0)].0);
         while !taken.insert(name.clone()) {
             name.push('_');
         }
         name
     };
-    plan.parts.iter().map(name).collect()
+    expansion.parts.iter().map(name).collect()
 }

@@ -1,28 +1,24 @@
-//! Components that move by a law which a program brings.
+//! Components whose law is registered by the program that reads the document.
 
-use super::super::fields::{Fields, Reader};
-use super::super::law::Law;
-use super::super::tree::Value;
-use condyle_diagnostics::nearest;
+use super::ModelReader;
+use crate::document::fields::Fields;
+use crate::document::model::blueprint::Blueprint;
+use crate::document::tree::Value;
+use condyle_diagnostics::did_you_mean;
 use condyle_model::component::Parameters;
 
-impl Reader<'_> {
-    pub(super) fn custom(&mut self, fields: &Fields<'_>) -> Option<Law> {
+impl ModelReader<'_> {
+    pub(super) fn custom(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
         let parameters = self.parameters(fields);
-        let Some(node) = fields.get("law") else {
-            self.missing(fields, "law", "the name of a law that the program knows");
-            return None;
-        };
+        let node = self.required(fields, "law", "the name of a registered law")?;
         let law = self.text(node, "law")?;
         let Some(wanted) = self.laws.inputs(&law.text) else {
-            // The registry knows which laws there are.
+            // The registry's message lists its laws.
             let refused = self.laws.make(&law.text, Parameters::new(), vec![]);
             let message = refused.err().unwrap_or_else(|| format!("unknown law `{}`", law.text));
-            let help = match nearest(&law.text, self.laws.names()) {
-                Some(near) => format!("did you mean \"{near}\"?"),
-                None => "register it in the program that reads this document".to_owned(),
-            };
-            self.sources.error(law.spot, "model/law", message, help);
+            let otherwise = || "register it in the program that reads this document".to_owned();
+            let help = did_you_mean(&law.text, self.laws.names(), otherwise);
+            self.texts.error(law.spot, "model/law", message, help);
             return None;
         };
         let wanted = wanted.join(", ");
@@ -38,22 +34,23 @@ impl Reader<'_> {
             let inputs = if takes == 1 { "input" } else { "inputs" };
             let message = format!("law `{}` takes {takes} {inputs}, not {given}", law.text);
             let help = format!("connect, in this order: {wanted}");
-            self.sources.error(spot, "model/arity", message, help);
+            self.texts.error(spot, "model/arity", message, help);
             sound = false;
         }
         match self.laws.make(&law.text, parameters?, vec![]) {
-            Ok(custom) => Some(Law::Custom(custom)).filter(|_| sound),
+            Ok(custom) => Some(Blueprint::Custom(custom)).filter(|_| sound),
             Err(why) => {
                 let spot = fields.get("parameters").map_or(fields.spot, |node| node.spot);
-                let message = format!("law `{}` cannot be made: {why}", law.text);
-                let help = "give other `parameters`: numbers or lists, in metres and radians";
-                self.sources.error(spot, "model/law", message, help);
+                let message = format!("law `{}` does not accept its parameters: {why}", law.text);
+                let help =
+                    "give `parameters` as numbers or lists of numbers, in metres and radians";
+                self.texts.error(spot, "model/law", message, help);
                 None
             }
         }
     }
 
-    /// Numbers and lists of numbers by name, as they are given.
+    /// Numbers and lists of numbers by name, without conversion of units.
     fn parameters(&mut self, fields: &Fields<'_>) -> Option<Parameters> {
         let Some(node) = fields.get("parameters") else { return Some(Parameters::new()) };
         if !matches!(node.value, Value::Table(_)) {

@@ -1,7 +1,7 @@
-//! A model as it is written: numbers read, names not yet looked up.
+//! A model as written: numbers are read, names are not resolved yet.
 
-use super::law::Law;
-use super::source::{Name, Spot};
+use super::blueprint::Blueprint;
+use crate::document::texts::{Name, Spot};
 use condyle_math::function::Function;
 use condyle_math::{Affine, Vec3};
 use condyle_model::{CoordinateKind, Range, UpAxis};
@@ -19,7 +19,7 @@ pub(super) struct Draft {
     pub(super) markers: Vec<MarkerDraft>,
     pub(super) closures: Vec<ClosureDraft>,
     pub(super) sizes: Vec<SizeDraft>,
-    /// Components that could not be read, by joint set and name; joints with no name behind.
+    /// Components that could not be read, by joint set and name; whole joints have an empty name.
     pub(super) broken: HashSet<(String, String)>,
 }
 
@@ -47,7 +47,7 @@ pub(super) struct CoordinateDraft {
 pub(super) struct ComponentDraft {
     pub(super) set: String,
     pub(super) name: Name,
-    pub(super) law: Law,
+    pub(super) blueprint: Blueprint,
     pub(super) ports: Vec<Name>,
 }
 
@@ -56,7 +56,7 @@ pub(super) struct OutputDraft {
     pub(super) set: String,
     pub(super) segment: Name,
     pub(super) ports: Vec<Name>,
-    /// Whether a list was given: the product of what it names.
+    /// Whether a list was given, which makes a product.
     pub(super) listed: bool,
 }
 
@@ -91,7 +91,7 @@ pub(super) enum ConditionDraft {
 }
 
 impl Draft {
-    /// Everything in the order of the text.
+    /// Sorts everything by its place in the text.
     pub(super) fn sort(&mut self) {
         let at = |name: &Name| -> Spot { name.spot };
         self.segments.sort_by_key(|s| at(&s.name));

@@ -1,6 +1,6 @@
-//! What a component does, before its inputs are known.
+//! Components before their inputs are known.
 
-use super::source::Name;
+use crate::document::texts::Name;
 use condyle_math::function::{Function, FunctionOfSeveral, SimmSpline};
 use condyle_math::{Affine, Vec3};
 use condyle_model::component::{
@@ -12,7 +12,7 @@ use condyle_model::{Cone, SegmentId, Source};
 
 /// A component without its inputs.
 #[derive(Clone)]
-pub(super) enum Law {
+pub(super) enum Blueprint {
     Map(Vec<Function>),
     Combine(FunctionOfSeveral),
     Depend {
@@ -24,7 +24,7 @@ pub(super) enum Law {
         segment: Name,
         surface: Name,
         before: bool,
-        law: Gliding,
+        gliding: Gliding,
     },
     Rotate(Vec3),
     Pivot(Vec3, Centre),
@@ -50,12 +50,12 @@ pub(super) enum Law {
         path: Box<[SimmSpline; 3]>,
         heading: Option<Heading>,
     },
-    /// Made already, to see whether its parameters will do; its inputs are filled in later.
+    /// Complete except for its inputs: made early to check its parameters.
     Custom(Custom),
     Product,
 }
 
-/// What a cone holds: angles about axes, or an orientation.
+/// What a cone limits: angles about axes, or an orientation.
 #[derive(Clone)]
 pub(super) enum Held {
     Three([Vec3; 3]),
@@ -63,8 +63,8 @@ pub(super) enum Held {
     Orientation,
 }
 
-impl Law {
-    /// What flows into the port at a position.
+impl Blueprint {
+    /// The type of the input at a position.
     pub(super) fn input(&self, position: usize) -> PortType {
         match self {
             Self::Ball | Self::Cone(Held::Orientation, _) => PortType::Orientation,
@@ -85,17 +85,17 @@ impl Law {
         }
     }
 
-    /// The component; a sentence where its parameters make none.
+    /// The component, or why its parameters are invalid.
     pub(super) fn build(
         self,
-        sources: Vec<Source>,
+        connected: Vec<Source>,
         segment: &mut dyn FnMut(&Name) -> Option<SegmentId>,
     ) -> Result<Component, String> {
-        let unknown = || "it names no segments".to_owned();
-        Ok(match (self, &sources[..]) {
+        let unknown = || "it names an unknown segment".to_owned();
+        Ok(match (self, &connected[..]) {
             (Self::Map(functions), &[input]) => Component::Map(Map { input, functions }),
             (Self::Combine(function), _) => {
-                Component::Combine(Combine { inputs: sources, function })
+                Component::Combine(Combine { inputs: connected, function })
             }
             (Self::Depend { lower, upper }, &[passive, driver]) => {
                 Component::Depend(Depend { passive, driver, lower, upper })
@@ -105,16 +105,16 @@ impl Law {
                     (Held::Three(axes), &[a, b, c]) => Swinging::Angles([a, b, c], axes),
                     (Held::Two(axes), &[a, b]) => Swinging::Directions([a, b], axes),
                     (Held::Orientation, &[one]) => Swinging::Orientation(one),
-                    _ => return Err("it has another number of inputs".to_owned()),
+                    _ => return Err("it has the wrong number of inputs".to_owned()),
                 };
                 Component::Cone(JointCone { of, cone })
             }
-            (Self::Contact { segment: moved, surface, before, law }, inputs) => {
+            (Self::Contact { segment: moved, surface, before, gliding }, inputs) => {
                 let (moved, surface) = (segment(&moved), segment(&surface));
                 let (segment, surface) = (moved.ok_or_else(unknown)?, surface.ok_or_else(unknown)?);
                 let (before, drivers) = inputs.split_at(usize::from(before).min(inputs.len()));
                 let (before, drivers) = (before.first().copied(), drivers.to_vec());
-                Component::Contact(Contact { segment, surface, before, drivers, law })
+                Component::Contact(Contact { segment, surface, before, drivers, law: gliding })
             }
             (Self::Rotate(axis), &[angle]) => Component::Rotate(Rotate { angle, axis }),
             (Self::Pivot(axis, centre), &[angle]) => Component::Pivot(
@@ -147,11 +147,11 @@ impl Law {
                 Component::Curve(Curve { parameter, path, heading })
             }
             (Self::Custom(mut custom), _) => {
-                custom.inputs = sources;
+                custom.inputs = connected;
                 Component::Custom(custom)
             }
-            (Self::Product, _) => Component::Product(Product { factors: sources }),
-            _ => return Err("it has another number of inputs".to_owned()),
+            (Self::Product, _) => Component::Product(Product { factors: connected }),
+            _ => return Err("it has the wrong number of inputs".to_owned()),
         })
     }
 }

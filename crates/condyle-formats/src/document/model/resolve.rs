@@ -1,8 +1,8 @@
-//! Names to positions, and the draft to a checked model.
+//! Resolves names, and builds the checked model.
 
+use super::blueprint::Blueprint;
 use super::draft::{ConditionDraft, Draft, Holder};
-use super::law::Law;
-use super::source::{Name, Sources, Spot};
+use crate::document::texts::{Name, Spot, Texts};
 use condyle_diagnostics::{Diagnostic, Read, Severity, Subject, did_you_mean, nearest};
 use condyle_math::{Affine, Vec3};
 use condyle_model::component::{Component, Place, PortType, Product};
@@ -12,11 +12,11 @@ use condyle_model::{
 };
 use std::collections::{HashMap, HashSet};
 
-/// The most numbers that a compiled model may keep of its products, and of its derivatives.
+/// How many factors of products, and how many derivatives, a compiled model may have.
 const MOST_FACTORS: u64 = 1 << 20;
 const MOST_DERIVATIVES: u64 = 1 << 24;
 
-/// What a name in a joint set means.
+/// What a name in a joint set stands for.
 #[derive(Clone, Copy)]
 struct Meaning {
     source: Source,
@@ -24,10 +24,10 @@ struct Meaning {
     outputs: usize,
 }
 
-/// Builds the model; errors go to `sources`.
-pub(super) fn build(draft: Draft, sources: &mut Sources) -> Option<Model> {
+/// Builds the model; `None` after an error.
+pub(super) fn build(draft: Draft, texts: &mut Texts) -> Option<Model> {
     let mut resolver = Resolver {
-        sources,
+        texts,
         builder: ModelBuilder::new(draft.name.as_deref().unwrap_or("model")),
         segments: HashMap::new(),
         sets: HashMap::new(),
@@ -36,30 +36,32 @@ pub(super) fn build(draft: Draft, sources: &mut Sources) -> Option<Model> {
         places: HashMap::new(),
     };
     resolver.all(draft);
-    let Resolver { sources, builder, places, .. } = resolver;
-    if sources.failed() {
+    let Resolver { texts, builder, places, .. } = resolver;
+    if texts.failed() {
         return None;
     }
     match builder.build_with_warnings() {
         Ok(Read { value: model, warnings }) => {
             for warning in warnings.into_iter().filter(|w| w.code != AXIS_LENGTH).take(100) {
-                let said = located(sources, &places, warning);
-                sources.warn(said);
+                let said = located(texts, &places, warning);
+                texts.warn(said);
             }
             let whole = Spot::default();
             if factors(&model) > MOST_FACTORS {
-                let message = "products of products make too long a chain";
-                let help = format!("at most {MOST_FACTORS} factors are multiplied");
-                sources.error(whole, "model/size", message, help);
+                let message = "products of products have too many factors";
+                let help = format!("a model may have at most {MOST_FACTORS}");
+                texts.error(whole, "model/size", message, help);
                 return None;
             }
             let parts =
                 model.segments().len() + model.components().len() + model.coordinates().len();
             if (parts as u64).saturating_mul(model.tangent_len() as u64) > MOST_DERIVATIVES {
-                let message =
-                    format!("{parts} parts and {} coordinates", model.coordinates().len());
-                let help = "this is more than can be differentiated; use several models";
-                sources.error(whole, "model/size", message, help);
+                let message = format!(
+                    "the model is too large: {parts} parts with {} coordinates",
+                    model.coordinates().len()
+                );
+                let help = "split it into several models";
+                texts.error(whole, "model/size", message, help);
                 return None;
             }
             Some(model)
@@ -67,22 +69,22 @@ pub(super) fn build(draft: Draft, sources: &mut Sources) -> Option<Model> {
         Err(findings) => {
             let errors = findings.into_diagnostics();
             for error in errors.into_iter().filter(|e| e.severity == Severity::Error).take(100) {
-                let said = located(sources, &places, error);
-                sources.push(said);
+                let said = located(texts, &places, error);
+                texts.push(said);
             }
             None
         }
     }
 }
 
-/// What a builder found, at the table of its first subject.
-fn located(sources: &Sources, places: &HashMap<Subject, Spot>, found: Diagnostic) -> Diagnostic {
+/// A diagnostic of the builder, placed at the table of its first subject.
+fn located(texts: &Texts, places: &HashMap<Subject, Spot>, found: Diagnostic) -> Diagnostic {
     let spot = found.subjects.first().and_then(|subject| places.get(subject)).copied();
-    let said = sources.said(spot.unwrap_or_default(), found.severity, found.code, found.message);
+    let said = texts.said(spot.unwrap_or_default(), found.severity, found.code, found.message);
     said.about_all(found.subjects).with_help(found.help)
 }
 
-/// The length of all chains of factors that segments are moved by.
+/// The number of factors of all products, expanded.
 fn factors(model: &Model) -> u64 {
     let count = model.components().len();
     let index = |source: Source| match source {
@@ -122,14 +124,14 @@ fn factors(model: &Model) -> u64 {
 }
 
 struct Resolver<'s> {
-    sources: &'s mut Sources,
+    texts: &'s mut Texts,
     builder: ModelBuilder,
     segments: HashMap<String, SegmentId>,
     sets: HashMap<String, JointSetId>,
     names: HashMap<(String, String), Meaning>,
-    /// Components that could not be read, by joint set and name; joints with no name behind.
+    /// As in [`Draft`].
     broken: HashSet<(String, String)>,
-    /// Where the table of each subject stands.
+    /// The place of each subject's table.
     places: HashMap<Subject, Spot>,
 }
 
@@ -177,17 +179,17 @@ impl Resolver<'_> {
             self.mean(&c.set, &c.name, meaning);
             coordinates.push((id, c.set.clone(), c.follows.clone()));
         }
-        // Made first and connected afterwards: a component may read one that stands below it.
-        let mut components: Vec<(ComponentId, String, Name, Law, Vec<Name>)> = vec![];
+        // All are added before any is connected: a component may reference one below it.
+        let mut components: Vec<(ComponentId, String, Name, Blueprint, Vec<Name>)> = vec![];
         for c in draft.components {
             let Some(&set) = self.sets.get(&c.set) else { continue };
             let stand_in = Component::Place(Place { child_in_parent: Affine::IDENTITY });
             let source = self.builder.component(set, &c.name.text, stand_in);
             let Source::Output(id, _) = source else { continue };
-            let (port, outputs) = c.law.outputs();
+            let (port, outputs) = c.blueprint.outputs();
             self.mean(&c.set, &c.name, Meaning { source, port, outputs });
             self.places.insert(Subject::component(&c.set, &c.name.text), c.name.spot);
-            components.push((id, c.set, c.name, c.law, c.ports));
+            components.push((id, c.set, c.name, c.blueprint, c.ports));
         }
         for (id, set, follows) in coordinates {
             if let Some(port) = follows
@@ -196,8 +198,8 @@ impl Resolver<'_> {
                 self.builder.follow(id, source);
             }
         }
-        for (id, set, name, law, ports) in components {
-            if let Law::Combine(function) = &law
+        for (id, set, name, blueprint, ports) in components {
+            if let Blueprint::Combine(function) = &blueprint
                 && function.arity() != ports.len()
             {
                 let message = format!(
@@ -206,25 +208,30 @@ impl Resolver<'_> {
                     ports.len(),
                     function.arity()
                 );
-                let help = "connect as many inputs as the function has arguments";
-                self.sources.error(name.spot, "model/arity", message, help);
+                let help = "give as many inputs as the function has arguments";
+                self.texts.error(name.spot, "model/arity", message, help);
                 continue;
             }
             let connected: Vec<Option<Source>> = ports
                 .iter()
                 .enumerate()
-                .map(|(position, port)| self.port(&set, port, law.input(position)))
+                .map(|(position, port)| self.port(&set, port, blueprint.input(position)))
                 .collect();
             let connected: Option<Vec<Source>> = connected.into_iter().collect();
             let Some(connected) = connected else { continue };
-            let before = self.sources.count();
-            match law.build(connected, &mut |name| self.segment(name)) {
+            let before = self.texts.count();
+            match blueprint.build(connected, &mut |name| self.segment(name)) {
                 Ok(component) => *self.builder.component_mut(id) = component,
-                // Unknown segments were named already.
-                Err(_) if self.sources.count() > before => {}
+                // Unknown segments are reported already.
+                Err(_) if self.texts.count() > before => {}
                 Err(why) => {
-                    let message = format!("component `{}` cannot be made: {why}", name.text);
-                    self.sources.error(name.spot, "model/component", message, "give other numbers");
+                    let message = format!("component `{}` is invalid: {why}", name.text);
+                    self.texts.error(
+                        name.spot,
+                        "model/component",
+                        message,
+                        "change its parameters",
+                    );
                 }
             }
         }
@@ -253,15 +260,15 @@ impl Resolver<'_> {
                     "segment `{}` is moved by `{other}` and by `{}`",
                     o.segment.text, o.set
                 );
-                let help = "let one joint set move it";
-                self.sources.error(o.segment.spot, "model/duplicate", message, help);
+                let help = "only one joint set may move a segment";
+                self.texts.error(o.segment.spot, "model/duplicate", message, help);
             }
-            let sources: Vec<Option<Source>> =
+            let factors: Vec<Option<Source>> =
                 o.ports.iter().map(|p| self.port(&o.set, p, PortType::Transform)).collect();
-            let Some(sources) = sources.into_iter().collect::<Option<Vec<Source>>>() else {
+            let Some(factors) = factors.into_iter().collect::<Option<Vec<Source>>>() else {
                 continue;
             };
-            let motion = match sources[..] {
+            let motion = match factors[..] {
                 [one] => one,
                 _ if !o.listed => continue,
                 _ => {
@@ -269,7 +276,7 @@ impl Resolver<'_> {
                     while self.names.contains_key(&(o.set.clone(), name.clone())) {
                         name.push('_');
                     }
-                    let product = Component::Product(Product { factors: sources });
+                    let product = Component::Product(Product { factors });
                     let source = self.builder.component(set, &name, product);
                     let meaning = Meaning { source, port: PortType::Transform, outputs: 1 };
                     self.mean(&o.set, &Name { text: name, spot: o.segment.spot }, meaning);
@@ -282,7 +289,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Size groups, each segment in one at most.
+    /// Size groups; a segment may be in one of them.
     fn sizes(&mut self, sizes: &[super::draft::SizeDraft]) {
         let mut group_of: HashMap<&str, &str> = HashMap::new();
         for size in sizes {
@@ -292,10 +299,10 @@ impl Resolver<'_> {
                 if let Some(other) = group_of.insert(&name.text, &size.name.text) {
                     let message = match other == size.name.text {
                         true => format!("segment `{}` is listed twice", name.text),
-                        false => format!("segment `{}` is in size `{other}` too", name.text),
+                        false => format!("segment `{}` is also in size group `{other}`", name.text),
                     };
-                    let help = "list it once: a segment grows with one group";
-                    self.sources.error(name.spot, "model/size-group", message, help);
+                    let help = "list it once: a segment may be in one group";
+                    self.texts.error(name.spot, "model/size-group", message, help);
                 }
                 segments.push(id);
             }
@@ -304,16 +311,16 @@ impl Resolver<'_> {
     }
 
     fn twice(&mut self, what: &str, name: &Name) {
-        let message = format!("a second {what} is named `{}`", name.text);
-        let help = format!("give each {what} a name of its own");
-        self.sources.error(name.spot, "model/duplicate", message, help);
+        let message = format!("there are two {what}s named `{}`", name.text);
+        let help = format!("give each {what} a different name");
+        self.texts.error(name.spot, "model/duplicate", message, help);
     }
 
     fn mean(&mut self, set: &str, name: &Name, meaning: Meaning) {
         if self.names.insert((set.to_owned(), name.text.clone()), meaning).is_some() {
-            let message = format!("`{}` is named twice in joint set `{set}`", name.text);
-            let help = "coordinates and components of a joint set share their names: rename one";
-            self.sources.error(name.spot, "model/duplicate", message, help);
+            let message = format!("there are two `{}` in joint set `{set}`", name.text);
+            let help = "coordinates and components of a joint set need different names";
+            self.texts.error(name.spot, "model/duplicate", message, help);
         }
     }
 
@@ -321,7 +328,7 @@ impl Resolver<'_> {
         if let Some(id) = self.segments.get(&name.text) {
             return Some(*id);
         }
-        self.sources.error_with(name.spot, "model/unknown-name", || {
+        self.texts.error_with(name.spot, "model/unknown-name", || {
             let known = self.segments.keys().map(String::as_str);
             let otherwise = || "name a segment of this model; omit it for the world".to_owned();
             let help = did_you_mean(&name.text, known, otherwise);
@@ -360,13 +367,13 @@ impl Resolver<'_> {
             Source::Coordinate(id) => Some(id),
             Source::Output(..) => {
                 let message = format!("`{}` is a component", name.text);
-                self.sources.error(name.spot, "model/port-type", message, "name a coordinate");
+                self.texts.error(name.spot, "model/port-type", message, "name a coordinate");
                 None
             }
         }
     }
 
-    /// What a port names: `name` in its own set, `set.name`, and `.N` behind for one of several
+    /// Resolves a port: `name` in its own set, or `set.name`, followed by `.N` for one of several
     /// outputs, counted from 1.
     fn port(&mut self, own: &str, port: &Name, wanted: PortType) -> Option<Source> {
         let parts = parts(&port.text);
@@ -390,9 +397,9 @@ impl Resolver<'_> {
             return None;
         };
         if output == 0 || output > meaning.outputs {
-            let message = format!("`{}` asks for an output that is not there", port.text);
-            let help = format!("its outputs are counted from 1 to {}", meaning.outputs);
-            self.sources.error(port.spot, "model/unknown-name", message, help);
+            let message = format!("`{}` names an output that does not exist", port.text);
+            let help = format!("its outputs are numbered from 1 to {}", meaning.outputs);
+            self.texts.error(port.spot, "model/unknown-name", message, help);
             return None;
         }
         if meaning.port != wanted {
@@ -404,13 +411,15 @@ impl Resolver<'_> {
             let message =
                 format!("`{}` is {}, not {}", port.text, word(meaning.port), word(wanted));
             let help = match wanted {
-                PortType::Scalar => "name a coordinate that is one number, a map or a combine",
+                PortType::Scalar => {
+                    "name a scalar coordinate, or a component such as map or combine"
+                }
                 PortType::Orientation => {
-                    "name a coordinate of kind \"orientation\", or a cone that holds one"
+                    "name a coordinate of kind \"orientation\", or a cone of one"
                 }
                 PortType::Transform => "name a component such as rotate, translate or product",
             };
-            self.sources.error(port.spot, "model/port-type", message, help);
+            self.texts.error(port.spot, "model/port-type", message, help);
             return None;
         }
         Some(match meaning.source {
@@ -419,7 +428,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// Whether a port names something that is there, but could not be read.
+    /// Whether a port names a component that could not be read, which is reported already.
     fn is_broken(&self, own: &str, parts: &[String]) -> bool {
         let has = |set: &str, name: &str| self.broken.contains(&(set.to_owned(), name.to_owned()));
         match parts {
@@ -436,7 +445,7 @@ impl Resolver<'_> {
             [first, ..] => (own, first.as_str()),
             [] => (own, ""),
         };
-        self.sources.error_with(port.spot, "model/unknown-name", || {
+        self.texts.error_with(port.spot, "model/unknown-name", || {
             let known = self.names.keys().filter(|(s, _)| s == set).map(|(_, n)| n.as_str());
             let elsewhere = || self.names.keys().filter(|(_, n)| n == name).map(|(s, _)| s).min();
             let help = match nearest(name, known) {
@@ -454,7 +463,7 @@ impl Resolver<'_> {
     }
 }
 
-/// The names of a port; a backslash takes the next letter as it is.
+/// The names of a port, separated by dots; a backslash escapes the next character.
 fn parts(text: &str) -> Vec<String> {
     let mut parts = vec![String::new()];
     let mut letters = text.chars();

@@ -1,20 +1,25 @@
-//! Joint cones: where a bone may point and how far it may turn about itself.
+//! Joint cones: the directions that a bone may point in, and how far it may twist.
 
-use super::super::fields::{Fields, Reader};
-use super::super::keys;
-use super::super::law::{Held, Law};
-use super::super::source::Spot;
-use super::super::tree::{Node, Value};
+use super::ModelReader;
+use crate::document::fields::Fields;
+use crate::document::model::blueprint::{Blueprint, Held};
+use crate::document::model::keys;
+use crate::document::texts::Spot;
+use crate::document::tree::{Node, Value};
 use condyle_math::{EulerOrder, Vec3};
 use condyle_model::limit::{Cone, ConeError, ConePoint, Projection};
 
-/// How often the number of points is doubled unless said.
+/// How often the number of points is doubled by default.
 const SUBDIVISIONS: u32 = 2;
 
-impl Reader<'_> {
-    pub(super) fn cone(&mut self, fields: &Fields<'_>) -> Option<Law> {
+impl ModelReader<'_> {
+    pub(super) fn cone(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
         let held = self.held(fields);
-        let rest = self.needed(fields, "rest", "the bone's long axis at rest, such as [0, -1, 0]");
+        let rest = self.required_vector(
+            fields,
+            "rest",
+            "the bone's long axis at rest, such as [0, -1, 0]",
+        );
         let twist = match fields.get("twist") {
             Some(node) => self.twist(node).map(Some),
             None => Some(None),
@@ -28,10 +33,10 @@ impl Reader<'_> {
         let projection = self.word(fields, "projection", &words);
         let (rest, twist, subdivisions) = (rest?, twist?, subdivisions?);
         match Cone::new(rest, twist, points?, subdivisions, projection?) {
-            Ok(cone) => Some(Law::Cone(held?, cone)),
+            Ok(cone) => Some(Blueprint::Cone(held?, cone)),
             Err(error) => {
                 let (spot, message, help) = refused(fields, error);
-                self.sources.error(spot, "model/cone", message, help);
+                self.texts.error(spot, "model/cone", message, help);
                 None
             }
         }
@@ -39,13 +44,10 @@ impl Reader<'_> {
 
     /// What the cone holds: an orientation, or angles about axes.
     fn held(&mut self, fields: &Fields<'_>) -> Option<Held> {
-        let axes = ["axes", "order"].map(|key| fields.get(key).map(|node| (key, node)));
         if fields.get("orientation").is_some() {
             for key in ["angles", "axes", "order"] {
                 let Some(node) = fields.get(key) else { continue };
-                let message = format!("both `orientation` and `{key}` are given");
-                let help = "an orientation needs no axes: give it alone, or angles with theirs";
-                self.sources.error(node.spot, "model/exclusive", message, help);
+                self.exclusive(node, "orientation", key);
                 return None;
             }
             return Some(Held::Orientation);
@@ -57,23 +59,21 @@ impl Reader<'_> {
         if !(2..=3).contains(&count) {
             let spot = fields.get("angles").map_or(fields.spot, |node| node.spot);
             let message = format!("`angles` has {count} names");
-            let help = "give three angles, or two where the bone does not turn about itself";
-            self.sources.error(spot, "model/length", message, help);
+            self.length(spot, message, "give three angles, or two if the bone does not twist");
             return None;
         }
-        let axes = match axes {
-            [Some((_, node)), None] => {
+        let axes = match (fields.get("axes"), fields.get("order")) {
+            (Some(node), None) => {
                 let list = self.list(node, "axes")?;
                 let axes: Vec<Option<Vec3>> = list.iter().map(|n| self.vector(n, "axes")).collect();
                 (node.spot, axes.into_iter().collect::<Option<Vec<Vec3>>>()?)
             }
-            [None, Some((_, node))] => (node.spot, self.letters(node, count)?),
-            [Some(_), Some((_, node))] => {
-                let message = "both `axes` and `order` are given";
-                self.sources.error(node.spot, "model/exclusive", message, "give one of them");
+            (None, Some(node)) => (node.spot, self.letters(node, count)?),
+            (Some(_), Some(node)) => {
+                self.exclusive(node, "axes", "order");
                 return None;
             }
-            [None, None] => {
+            (None, None) => {
                 let wanted = "the axes of the angles, or an `order` such as \"zxy\"";
                 self.missing(fields, "axes", wanted);
                 return None;
@@ -84,14 +84,13 @@ impl Reader<'_> {
             (2, &[a, b]) => Some(Held::Two([a, b])),
             (_, list) => {
                 let message = format!("`axes` has {} directions for {count} angles", list.len());
-                let help = format!("give {count}");
-                self.sources.error(axes.0, "model/length", message, help);
+                self.length(axes.0, message, format!("give {count}"));
                 None
             }
         }
     }
 
-    /// The axes that an order names: three letters, or two of two angles.
+    /// The axes named by an order: one letter for each of three or two angles.
     fn letters(&mut self, node: &Node, count: usize) -> Option<Vec<Vec3>> {
         let axis = |letter: char| "xyz".find(letter).map(|i| [Vec3::X, Vec3::Y, Vec3::Z][i]);
         if count == 3 {
@@ -105,27 +104,24 @@ impl Reader<'_> {
         {
             return axes;
         }
-        let message = format!("unknown rotation order `{}` of two angles", name.text);
-        let help = "give two different ones of x, y, z, such as \"zx\"";
-        self.sources.error(name.spot, "model/order", message, help);
+        let message = format!("unknown rotation order `{}` for two angles", name.text);
+        let help = "give two different letters of x, y, z, such as \"zx\"";
+        self.texts.error(name.spot, "document/order", message, help);
         None
     }
 
     fn cone_points(&mut self, fields: &Fields<'_>) -> Option<Vec<ConePoint>> {
-        let Some(node) = fields.get("points") else {
-            let wanted = "directions around `rest`, such as [{ direction = [1, -1, 0] }, ...]";
-            self.missing(fields, "points", wanted);
-            return None;
-        };
+        let wanted = "directions around `rest`, such as [{ direction = [1, -1, 0] }, ...]";
+        let node = self.required(fields, "points", wanted)?;
         let list = self.list(node, "points")?;
-        // All of them are read, so that all that are wrong are named.
+        // Read to the end, so that every error is reported.
         let points: Vec<Option<ConePoint>> = list
             .iter()
             .map(|node| {
                 let label = format!("{}.points", fields.label);
                 let fields = self.table(node, node.spot, label, keys::CONE_POINT);
-                let wanted = "where the bone can just point, such as [1, -1, 0]";
-                let direction = self.needed(&fields, "direction", wanted);
+                let wanted = "a direction at the limit, such as [1, -1, 0]";
+                let direction = self.required_vector(&fields, "direction", wanted);
                 let twist = match fields.get("twist") {
                     Some(node) => self.twist(node).map(Some),
                     None => Some(None),
@@ -136,20 +132,20 @@ impl Reader<'_> {
         points.into_iter().collect()
     }
 
-    /// Lowest and highest turn of the bone about itself.
+    /// The lower and upper limit of twist.
     fn twist(&mut self, node: &Node) -> Option<[f64; 2]> {
         let unit = self.angle_unit(node.spot);
         let [low, high] = self.some::<2>(node, "twist")?;
         if low > high {
-            let message = format!("the lowest twist {low} lies above the highest {high}");
-            self.sources.error(node.spot, "model/crossing-range", message, "exchange the two");
+            let message = format!("the lower twist limit {low} is above the upper limit {high}");
+            self.texts.error(node.spot, "model/crossing-range", message, "exchange the two");
             return None;
         }
         Some([unit * low, unit * high])
     }
 }
 
-/// What is wrong with a cone: where, what, and what would be right. Points are counted from 1.
+/// An invalid cone: place, message and help. Points are counted from 1.
 fn refused(fields: &Fields<'_>, error: ConeError) -> (Spot, String, &'static str) {
     let at = |key: &str| fields.get(key).or(fields.get("points")).map_or(fields.spot, |n| n.spot);
     let given = match fields.get("points").map(|node| &node.value) {
@@ -168,12 +164,12 @@ fn refused(fields: &Fields<'_>, error: ConeError) -> (Spot, String, &'static str
         ConeError::NoDirection { point: one } => (
             point(one),
             format!("the direction of point {} has length 0", one + 1),
-            "give where the bone can just point, such as [1, -1, 0]",
+            "give a direction at the limit, such as [1, -1, 0]",
         ),
         ConeError::TooFewPoints { count } => (
             at("points"),
-            format!("{count} points enclose nothing"),
-            "give at least 3, in their order around `rest`",
+            format!("{count} points do not enclose an area"),
+            "give at least 3, in order around `rest`",
         ),
         ConeError::TooManyPoints { count, subdivisions } => (
             at("subdivisions"),
@@ -183,53 +179,58 @@ fn refused(fields: &Fields<'_>, error: ConeError) -> (Spot, String, &'static str
             ),
             "subdivide less often",
         ),
-        ConeError::TwistCrossing { point: one } => {
-            (twist(one), "the lowest twist lies above the highest".to_owned(), "exchange the two")
-        }
+        ConeError::TwistCrossing { point: one } => (
+            twist(one),
+            "the lower twist limit is above the upper limit".to_owned(),
+            "exchange the two",
+        ),
         ConeError::TwistRange { point: one } => (
             twist(one),
-            "a bound of twist lies beyond a full turn".to_owned(),
-            "give bounds within one turn either way",
+            "a twist limit is beyond a full turn".to_owned(),
+            "give limits between -1 and 1 turn",
         ),
         ConeError::NoTwistAtRest { point: one } => (
             point(one),
-            format!("point {} has bounds of twist, but there are none at rest", one + 1),
-            "give `twist` beside `rest` too, or leave it away at the points",
+            format!("point {} has twist limits, but there are none at rest", one + 1),
+            "give `twist` beside `rest`, or omit it at the points",
         ),
         ConeError::Coincident { from, to } => (
             point(to),
             format!("points {} and {} have the same direction", from + 1, to + 1),
-            "leave one of them away",
+            "remove one of them",
         ),
         ConeError::HalfTurn { from, to } => (
             point(to),
-            format!("points {} and {} point opposite ways", from + 1, to + 1),
-            "put a point between them, so that the edge is determined",
+            format!("points {} and {} have opposite directions", from + 1, to + 1),
+            "add a point between them, so that the edge is determined",
         ),
         ConeError::OppositeRest { point: one } => (
             point(one),
-            format!("point {} lies opposite to the rest direction", one + 1),
-            "move it toward the rest direction: what is opposite is always outside",
+            format!("point {} is opposite to the rest direction", one + 1),
+            "move it toward the rest direction: the opposite direction is always outside",
         ),
         ConeError::RestOutside => (
             at("rest"),
             "the rest direction is not inside the points".to_owned(),
-            "choose one inside, or give the points in their order around it",
+            "choose one inside, or give the points in order around it",
         ),
         ConeError::Hidden { from, to, refined: false } => (
             point(from),
-            format!("the rest direction does not see all of {}", edge(from, to)),
-            "put the points in their order around `rest`, or move one of the two",
+            format!("not all of {} is visible from the rest direction", edge(from, to)),
+            "give the points in order around `rest`, or move one of the two",
         ),
         ConeError::Hidden { from, to, refined: true } => (
             point(from),
-            format!("subdivided, the rest direction does not see all of {}", edge(from, to)),
+            format!(
+                "after subdivision, not all of {} is visible from the rest direction",
+                edge(from, to)
+            ),
             "give fewer `subdivisions`, or a point between the two",
         ),
         ConeError::WoundTwice => (
             at("points"),
             "the points run around the rest direction more than once".to_owned(),
-            "put them in their order around it",
+            "give them in order around it",
         ),
     }
 }

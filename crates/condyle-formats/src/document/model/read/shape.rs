@@ -1,30 +1,29 @@
-//! The parameters of components that have a shape: paths, ellipsoids, columns, scales and shears.
+//! The parameters of paths, ellipsoids, columns, scales and shears.
 
-use super::super::fields::{Fields, Reader};
-use super::super::keys;
-use super::super::law::Law;
-use super::super::tree::Node;
+use super::ModelReader;
+use crate::document::fields::Fields;
+use crate::document::model::blueprint::Blueprint;
+use crate::document::model::keys;
+use crate::document::tree::Node;
 use condyle_math::Vec3;
 use condyle_math::function::SimmSpline;
 use condyle_model::component::{Along, Centre, Heading, SurfaceAxis};
 
-impl Reader<'_> {
-    /// Where the centre of a pivot is: at one point for each interval, or on a smooth path.
+impl ModelReader<'_> {
+    /// The centre of a pivot: one point for each interval, or a smooth path.
     pub(super) fn centre(&mut self, fields: &Fields<'_>) -> Option<Centre> {
         if let Some(node) = fields.get("path") {
             let unit = self.angle_unit(node.spot);
             return self.path(node, unit, "angle").map(Centre::Path);
         }
-        let Some(node) = fields.get("centres") else {
-            self.missing(fields, "centres", "centres such as [{ to = 1.5, at = [0, 0.01, 0] }]");
-            return None;
-        };
+        let wanted = "centres such as [{ to = 1.5, at = [0, 0.01, 0] }]";
+        let node = self.required(fields, "centres", wanted)?;
         let unit = self.angle_unit(node.spot);
         let mut centres = vec![];
         for node in self.list(node, "centres")? {
             let label = format!("{}.centres", fields.label);
             let fields = self.table(node, node.spot, label, keys::CENTRE);
-            // The last interval need not end.
+            // The last interval may be unbounded.
             let to = match fields.get("to") {
                 Some(node) => unit * self.number(node, "to")?,
                 None => f64::INFINITY,
@@ -35,7 +34,7 @@ impl Reader<'_> {
         Some(Centre::Intervals(centres))
     }
 
-    /// Three splines for x, y and z; `unit` is what their arguments are multiplied with.
+    /// Three splines for x, y and z, their arguments multiplied by `unit`.
     fn path(&mut self, node: &Node, unit: f64, argument: &str) -> Option<Box<[SimmSpline; 3]>> {
         let list = self.list(node, "path")?;
         let mut splines = vec![];
@@ -49,22 +48,18 @@ impl Reader<'_> {
             Err(_) => {
                 let message = format!("`path` has {} curves", list.len());
                 let help = format!("give three lists of [{argument}, place]: for x, y and z");
-                self.sources.error(node.spot, "model/length", message, help);
+                self.length(node.spot, message, help);
                 None
             }
         }
     }
 
     /// A path, and how a segment turns with it.
-    pub(in super::super) fn curve(&mut self, fields: &Fields<'_>) -> Option<Law> {
+    pub(in super::super) fn curve(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
         let unit = fields.get("in").map_or(Some(1.0), |n| self.unit_of(n, "in"));
-        let path = match fields.get("path") {
-            Some(node) => unit.and_then(|unit| self.path(node, unit, "parameter")),
-            None => {
-                self.missing(fields, "path", "three lists of [parameter, place]: for x, y and z");
-                None
-            }
-        };
+        let wanted = "three lists of [parameter, place]: for x, y and z";
+        let node = self.required(fields, "path", wanted);
+        let path = node.zip(unit).and_then(|(node, unit)| self.path(node, unit, "parameter"));
         let heading = match (fields.get("forward"), fields.get("up")) {
             (None, None) => None,
             (Some(forward), Some(up)) => {
@@ -75,24 +70,24 @@ impl Reader<'_> {
                 let (has, lacks) =
                     if one.is_some() { ("forward", "up") } else { ("up", "forward") };
                 let spot = one.or(other).map_or(fields.spot, |node| node.spot);
-                let message = format!("`{has}` stands without `{lacks}`");
-                let help = "give both: the axis that follows the curve and the one that stays up; \
-                            or neither, for no turn";
-                self.sources.error(spot, "model/missing", message, help);
+                let message = format!("`{has}` is given without `{lacks}`");
+                let help = "give both: the axis along the curve and the axis that stays up; or \
+                            neither, for no turn";
+                self.texts.error(spot, "document/missing", message, help);
                 return None;
             }
         };
-        Some(Law::Curve { path: path?, heading })
+        Some(Blueprint::Curve { path: path?, heading })
     }
 
-    pub(in super::super) fn ellipsoid(&mut self, fields: &Fields<'_>) -> Option<Law> {
-        let radii = self.needed(fields, "radii", "three half axes in metres");
+    pub(in super::super) fn ellipsoid(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
+        let radii = self.required_vector(fields, "radii", "three half axes in metres");
         let words = [("opensim", SurfaceAxis::OpenSim), ("normal", SurfaceAxis::Normal)];
         let axis = self.word(fields, "surface_axis", &words);
-        Some(Law::Ellipsoid(radii?, axis?))
+        Some(Blueprint::Ellipsoid(radii?, axis?))
     }
 
-    pub(super) fn column(&mut self, fields: &Fields<'_>) -> Option<Law> {
+    pub(super) fn column(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
         let neutral = match fields.get("neutral") {
             Some(node) => {
                 let unit = self.angle_unit(node.spot);
@@ -100,15 +95,12 @@ impl Reader<'_> {
             }
             None => [0.0; 3],
         };
-        let Some(length) = fields.get("length") else {
-            self.missing(fields, "length", "the length of the arc in metres");
-            return None;
-        };
-        Some(Law::ConstantCurvature { neutral, length: self.number(length, "length")? })
+        let length = self.required(fields, "length", "the length of the arc in metres")?;
+        Some(Blueprint::ConstantCurvature { neutral, length: self.number(length, "length")? })
     }
 
-    /// A scale everywhere, along an axis, or along an axis with the volume kept.
-    pub(in super::super) fn scale(&mut self, fields: &Fields<'_>) -> Option<Law> {
+    /// A uniform scale, or one along an axis, with or without constant volume.
+    pub(in super::super) fn scale(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
         let volume = self.flag(fields.get("volume"), "volume", false);
         let along = match fields.get("axis") {
             Some(node) => {
@@ -116,17 +108,18 @@ impl Reader<'_> {
                 if volume { Along::Volume(axis) } else { Along::Axis(axis) }
             }
             None if volume => {
-                self.missing(fields, "axis", "the axis along which it grows while it thins");
+                self.missing(fields, "axis", "the axis of the stretch");
                 return None;
             }
             None => Along::Everywhere,
         };
-        Some(Law::Scale(along))
+        Some(Blueprint::Scale(along))
     }
 
-    pub(in super::super) fn shear(&mut self, fields: &Fields<'_>) -> Option<Law> {
-        let along = self.needed(fields, "along", "the direction in which layers slide");
-        let across = self.needed(fields, "across", "the direction in which layers are stacked");
-        Some(Law::Shear { along: along?, across: across? })
+    pub(in super::super) fn shear(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
+        let along = self.required_vector(fields, "along", "the direction in which layers slide");
+        let across =
+            self.required_vector(fields, "across", "the direction in which layers are stacked");
+        Some(Blueprint::Shear { along: along?, across: across? })
     }
 }

@@ -1,4 +1,4 @@
-//! A model that never was text, written out in full.
+//! Writes any model, with everything expanded.
 
 mod component;
 
@@ -18,7 +18,7 @@ use line;
 
 /// Writes a model as a document that reads back to the same model: same order, same numbers.
 ///
-/// Components whose names clash with others of their joint set get a number behind.
+/// A component whose name is taken in its joint set gets a number appended.
 #[must_use]
 pub fn write(model: &Model) -> String {
     let mut writer = Writer { model, out: String::new(), components: component_names(model) };
@@ -156,7 +156,7 @@ impl Writer<'_> {
         }
     }
 
-    /// A port as a text: by bare name in the set itself.
+    /// A port as a string: the bare name within its own set.
     fn port(&self, own: Option<usize>, source: Source) -> String {
         let (set, name, output) = match source {
             Source::Coordinate(id) => {
@@ -268,7 +268,7 @@ fn vector(v: Vec3) -> String {
     numbers(&v.to_array())
 }
 
-/// The lines of a frame: `at`, and `turn` where three angles say the rotation to rounding, else
+/// The lines of a frame: `at`, and `turn` where three angles give the rotation to rounding, else
 /// `matrix`.
 fn frame(frame: Affine) -> Vec<String> {
     let mut lines = vec![];

@@ -1,24 +1,11 @@
-//! The words of a model document: every key that each table takes.
+//! The keys of each table of a model document.
 
-/// Keys at the top of a document.
-pub(super) const TOP: &[&str] = &[
-    "condyle",
-    "kind",
-    "name",
-    "up",
-    "angles",
-    "include",
-    "constants",
-    "mirror",
-    "segment",
-    "joint",
-    "joint_set",
-    "marker",
-    "closure",
-    "size",
-];
-/// What a document of this format may be.
-pub(super) const KINDS: &[&str] = &["model", "limit", "law", "recipe", "setup", "names"];
+use crate::document::function::{FUNCTION, SEVERAL};
+use crate::document::head::HEAD;
+
+/// The keys at the top of a document, beside those of its head.
+pub(super) const TOP: &[&str] =
+    &["up", "mirror", "segment", "joint", "joint_set", "marker", "closure", "size"];
 pub(super) const MIRROR: &[&str] = &["plane", "from", "to"];
 pub(super) const SEGMENT: &[&str] = &[
     "parent",
@@ -51,7 +38,7 @@ pub(super) const JOINT: &[&str] = &[
     "coordinates",
     "coordinate",
 ];
-/// The types of plain joints, with the keys that each takes beside those that all take.
+/// The types of plain joints, with the keys of each beside [`JOINT_BASE`].
 pub(super) const JOINT_TYPES: &[(&str, &[&str])] = &[
     ("hinge", &["axis"]),
     ("universal", &["axes"]),
@@ -67,7 +54,7 @@ pub(super) const JOINT_TYPES: &[(&str, &[&str])] = &[
     ("ellipsoid", &["radii", "surface_axis"]),
     ("weld", &[]),
 ];
-/// What every plain joint takes.
+/// The keys of every plain joint.
 pub(super) const JOINT_BASE: &[&str] = &["segment", "type", "coordinates", "coordinate"];
 pub(super) const JOINT_SET: &[&str] = &["coordinate", "component", "output"];
 pub(super) const COORDINATE: &[&str] =
@@ -80,11 +67,8 @@ pub(super) const CENTRE: &[&str] = &["to", "at"];
 pub(super) const CONE_POINT: &[&str] = &["direction", "twist"];
 pub(super) const CONTACT_PAIR: &[&str] = &["first", "second", "at"];
 pub(super) const COUPLING: &[&str] = &["follower", "driver", "function"];
-pub(super) const FUNCTION: &[&str] =
-    &["constant", "linear", "ends", "polynomial", "spline", "lines", "factor"];
-pub(super) const SEVERAL: &[&str] = &["slopes", "intercept", "dimension", "order", "coefficients"];
 
-/// The component kinds with their keys.
+/// The kinds of components with their keys.
 pub(super) const COMPONENTS: &[(&str, &[&str])] = &[
     ("map", &["input", "function", "functions", "in", "out"]),
     ("combine", &["inputs", "function"]),
@@ -125,13 +109,14 @@ pub(super) const COMPONENTS: &[(&str, &[&str])] = &[
     ("product", &["factors"]),
 ];
 
-/// Every table of a model document with the keys that it takes, for manuals and schemas.
+/// Every table of a model document with its keys, for manuals and schemas.
 ///
-/// The components stand under their kinds, such as `component.rotate`.
+/// Components are listed by kind, such as `component.rotate`.
 #[must_use]
 pub fn keys() -> Vec<(String, Vec<&'static str>)> {
+    let top = [HEAD, TOP].concat();
     let plain: [(&str, &[&'static str]); 17] = [
-        ("model", TOP),
+        ("model", &top),
         ("mirror", MIRROR),
         ("segment", SEGMENT),
         ("joint", JOINT),

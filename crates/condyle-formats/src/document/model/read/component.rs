@@ -1,39 +1,44 @@
 //! Components: their parameters, and the names at their ports.
 
-use super::super::draft::{ComponentDraft, Draft};
-use super::super::fields::{Fields, Reader};
-use super::super::function::rescaled;
-use super::super::keys;
-use super::super::law::Law;
-use super::super::source::Name;
-use super::super::tree::{Entry, Node, Value};
 use super::FRAME;
-use condyle_diagnostics::nearest;
-use condyle_math::Vec3;
+use super::ModelReader;
+use crate::document::fields::Fields;
+use crate::document::function::rescaled;
+use crate::document::model::blueprint::Blueprint;
+use crate::document::model::draft::{ComponentDraft, Draft};
+use crate::document::model::keys;
+use crate::document::texts::Name;
+use crate::document::tree::{Entry, Value};
+use condyle_diagnostics::did_you_mean;
 use condyle_math::function::Function;
 
-/// What is asked for where a direction is missing.
+/// The help where a direction is missing.
 pub(super) const DIRECTION: &str = "a direction such as [0, 0, 1]";
 
-impl Reader<'_> {
+impl ModelReader<'_> {
     pub(super) fn component(&mut self, draft: &mut Draft, set: &str, entry: &Entry) {
         let name = entry.key.clone();
         let label = format!("joint_set.{set}.component.{}", name.text);
         let read = self.kind_of(&label, entry).and_then(|(one, known)| {
             let kind = one.key.text.as_str();
             let fields = self.table(&one.node, name.spot, format!("{label}.{kind}"), known);
-            self.law(&fields, kind)
+            self.blueprint(&fields, kind)
         });
         match read {
-            Some((law, ports)) => {
-                draft.components.push(ComponentDraft { set: set.to_owned(), name, law, ports });
+            Some((blueprint, ports)) => {
+                draft.components.push(ComponentDraft {
+                    set: set.to_owned(),
+                    name,
+                    blueprint,
+                    ports,
+                });
             }
-            // What reads it is not to blame.
+            // Do not report errors again for components that reference this one.
             None => _ = draft.broken.insert((set.to_owned(), name.text)),
         }
     }
 
-    /// The one table of a component, which is named by its kind, and the keys of that kind.
+    /// The one table of a component, named by its kind, and the keys of that kind.
     fn kind_of<'t>(
         &mut self,
         label: &str,
@@ -42,9 +47,9 @@ impl Reader<'_> {
         let kinds: Vec<&str> = keys::COMPONENTS.iter().map(|(kind, _)| *kind).collect();
         let [one] = self.entries(&entry.node, label) else {
             if matches!(entry.node.value, Value::Table(_)) {
-                let message = format!("[{label}] does not hold one component");
-                let help = format!("name its kind: [{label}.KIND] with {}", kinds.join(", "));
-                self.sources.error(entry.key.spot, "model/component", message, help);
+                let message = format!("[{label}] must hold exactly one component");
+                let help = format!("give its kind as [{label}.KIND], one of: {}", kinds.join(", "));
+                self.texts.error(entry.key.spot, "model/component", message, help);
             }
             return None;
         };
@@ -52,51 +57,49 @@ impl Reader<'_> {
         if let Some((_, known)) = keys::COMPONENTS.iter().find(|(k, _)| *k == kind) {
             return Some((one, known));
         }
-        let help = match nearest(kind, kinds.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("kinds are: {}", kinds.join(", ")),
-        };
+        let all = || format!("kinds are: {}", kinds.join(", "));
+        let help = did_you_mean(kind, kinds.iter().copied(), all);
         let message = format!("unknown kind of component `{kind}`");
-        self.sources.error(one.key.spot, "model/component", message, help);
+        self.texts.error(one.key.spot, "model/component", message, help);
         None
     }
 
     /// The parameters of a component and the names at its ports.
-    fn law(&mut self, fields: &Fields<'_>, kind: &str) -> Option<(Law, Vec<Name>)> {
+    fn blueprint(&mut self, fields: &Fields<'_>, kind: &str) -> Option<(Blueprint, Vec<Name>)> {
         let names = self.ports(fields, kind);
-        let law = match kind {
-            "map" => Law::Map(self.map(fields)?),
-            "combine" => match fields.get("function") {
-                Some(node) => Law::Combine(self.several(node, "function")?),
-                None => {
-                    self.missing(fields, "function", "{ slopes = [...], intercept = 0 }");
-                    return None;
-                }
-            },
-            "rotate" => Law::Rotate(self.needed(fields, "axis", DIRECTION)?),
-            "translate" => {
-                Law::Translate(self.needed(fields, "axis", "a direction such as [0, 1, 0]")?)
+        let blueprint = match kind {
+            "map" => Blueprint::Map(self.map(fields)?),
+            "combine" => {
+                let wanted = "{ slopes = [...], intercept = 0 }";
+                let node = self.required(fields, "function", wanted)?;
+                Blueprint::Combine(self.several(node, "function")?)
             }
+            "rotate" => Blueprint::Rotate(self.required_vector(fields, "axis", DIRECTION)?),
+            "translate" => Blueprint::Translate(self.required_vector(
+                fields,
+                "axis",
+                "a direction such as [0, 1, 0]",
+            )?),
             "depend" => self.depend(fields)?,
             "cone" => self.cone(fields)?,
             "contact" => self.contact(fields)?,
             "pivot" => {
-                let axis = self.needed(fields, "axis", DIRECTION);
+                let axis = self.required_vector(fields, "axis", DIRECTION);
                 let centre = self.centre(fields)?;
-                Law::Pivot(axis?, centre)
+                Blueprint::Pivot(axis?, centre)
             }
             "compensate" => self.compensate(fields)?,
-            "ball" => Law::Ball,
-            "place" => Law::Place(self.frame(fields, FRAME)),
+            "ball" => Blueprint::Ball,
+            "place" => Blueprint::Place(self.frame(fields, FRAME)),
             "ellipsoid" => self.ellipsoid(fields)?,
             "constant_curvature" => self.column(fields)?,
             "scale" => self.scale(fields)?,
             "shear" => self.shear(fields)?,
             "curve" => self.curve(fields)?,
             "custom" => self.custom(fields)?,
-            _ => Law::Product,
+            _ => Blueprint::Product,
         };
-        Some((law, names?))
+        Some((blueprint, names?))
     }
 
     /// The names at the ports of a component, in their order.
@@ -118,13 +121,8 @@ impl Reader<'_> {
         };
         let mut names: Vec<Option<Name>> = vec![];
         for port in single {
-            match fields.get(port) {
-                Some(node) => names.push(self.text(node, port)),
-                None => {
-                    self.missing(fields, port, "the name of a coordinate or a component");
-                    names.push(None);
-                }
-            }
+            let wanted = "the name of a coordinate or a component";
+            names.push(self.required(fields, port, wanted).and_then(|n| self.text(n, port)));
         }
         let several = match kind {
             "combine" | "custom" => Some("inputs"),
@@ -134,23 +132,19 @@ impl Reader<'_> {
             _ => None,
         };
         if let Some(port) = several {
-            match fields.get(port) {
+            let wanted = match kind {
+                "cone" => "the names of three angles (or two), or an `orientation`",
+                _ => "a list of names",
+            };
+            match self.required(fields, port, wanted) {
                 Some(node) => names.extend(self.names(node, port).0.into_iter().map(Some)),
-                None if kind == "cone" => {
-                    let wanted = "the names of three angles (or two), or an `orientation`";
-                    self.missing(fields, port, wanted);
-                    names.push(None);
-                }
-                None => {
-                    self.missing(fields, port, "a list of names");
-                    names.push(None);
-                }
+                None => names.push(None),
             }
         }
         names.into_iter().collect()
     }
 
-    fn depend(&mut self, fields: &Fields<'_>) -> Option<Law> {
+    fn depend(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
         let mut bound = |key: &str| match fields.get(key) {
             Some(node) => self.function(node, key).map(Some),
             None => Some(None),
@@ -160,13 +154,17 @@ impl Reader<'_> {
             self.missing(fields, "lower", "`lower`, `upper` or both, as functions of the driver");
             return None;
         }
-        Some(Law::Depend { lower: lower?, upper: upper? })
+        Some(Blueprint::Depend { lower: lower?, upper: upper? })
     }
 
-    fn compensate(&mut self, fields: &Fields<'_>) -> Option<Law> {
+    fn compensate(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
         let (Some(segment), Some(ancestors)) = (fields.get("segment"), fields.get("ancestors"))
         else {
-            self.missing(fields, "ancestors", "`segment` and the `ancestors` to be compensated");
+            self.missing(
+                fields,
+                "ancestors",
+                "`segment`, and the `ancestors` whose turns it compensates",
+            );
             return None;
         };
         let segment = self.text(segment, "segment");
@@ -175,17 +173,7 @@ impl Reader<'_> {
             Some(node) => self.number(node, "weight")?,
             None => 1.0,
         };
-        Some(Law::Compensate { segment: segment?, ancestors, weight })
-    }
-
-    pub(super) fn needed(&mut self, fields: &Fields<'_>, key: &str, wanted: &str) -> Option<Vec3> {
-        match fields.get(key) {
-            Some(node) => self.vector(node, key),
-            None => {
-                self.missing(fields, key, wanted);
-                None
-            }
-        }
+        Some(Blueprint::Compensate { segment: segment?, ancestors, weight })
     }
 
     fn map(&mut self, fields: &Fields<'_>) -> Option<Vec<Function>> {
@@ -201,8 +189,7 @@ impl Reader<'_> {
                 return None;
             }
             (Some(_), Some(node)) => {
-                let message = "both `function` and `functions` are given";
-                self.sources.error(node.spot, "model/exclusive", message, "give one of them");
+                self.exclusive(node, "function", "functions");
                 return None;
             }
         };
@@ -210,46 +197,5 @@ impl Reader<'_> {
         let (argument, value) = (unit("in")?, unit("out")?);
         functions = functions.into_iter().map(|f| rescaled(f, argument, value)).collect();
         Some(functions)
-    }
-
-    /// What numbers in a unit have to be multiplied with.
-    pub(super) fn unit_of(&mut self, node: &Node, key: &str) -> Option<f64> {
-        let name = self.text(node, key)?;
-        match name.text.as_str() {
-            "rad" | "m" => Some(1.0),
-            "deg" => Some(std::f64::consts::PI / 180.0),
-            "mm" => Some(0.001),
-            other => {
-                let message = format!("unknown unit `{other}`");
-                let help = "units are: rad, deg, m, mm";
-                self.sources.error(name.spot, "model/unit", message, help);
-                None
-            }
-        }
-    }
-
-    /// What stands at a key that takes one of a few words; the first of them unless said.
-    pub(super) fn word<T: Copy>(
-        &mut self,
-        fields: &Fields<'_>,
-        key: &str,
-        words: &[(&str, T)],
-    ) -> Option<T> {
-        let Some(node) = fields.get(key) else { return words.first().map(|(_, value)| *value) };
-        let name = self.text(node, key)?;
-        if let Some((_, value)) = words.iter().find(|(word, _)| *word == name.text) {
-            return Some(*value);
-        }
-        let known = words.iter().map(|(word, _)| *word);
-        let help = match nearest(&name.text, known.clone()) {
-            Some(near) => format!("did you mean \"{near}\"?"),
-            None => {
-                let known: Vec<String> = known.map(|word| format!("\"{word}\"")).collect();
-                format!("give {}", known.join(" or "))
-            }
-        };
-        let message = format!("`{key}` is `{}`", name.text);
-        self.sources.error(name.spot, "model/word", message, help);
-        None
     }
 }

@@ -1,4 +1,4 @@
-//! The tables of a model document, one after the other, into a [`Draft`].
+//! The tables of a model document, read into a [`Draft`].
 
 mod closure;
 mod component;
@@ -9,31 +9,48 @@ mod custom;
 mod shape;
 mod size;
 
-use super::draft::{CoordinateDraft, Draft, OutputDraft, SegmentDraft};
-use super::fields::{Constant, Reader};
-use super::keys;
-use super::mirror::Mirror;
-use super::source::Spot;
-use super::tree::{Entry, Node, Value};
+use crate::document::fields::{Fields, Reader};
+use crate::document::model::draft::{CoordinateDraft, Draft, OutputDraft, SegmentDraft};
+use crate::document::model::keys;
+use crate::document::model::mirror::Mirror;
+use crate::document::tree::{Entry, Node};
+use condyle_model::component::Registry;
 use condyle_model::{CoordinateKind, Range, UpAxis};
+use std::ops::{Deref, DerefMut};
 
 const FRAME: [&str; 4] = ["at", "turn", "order", "matrix"];
 
-impl Reader<'_> {
-    /// Reads the whole tree.
-    pub(super) fn draft(&mut self, entries: Vec<Entry>) -> Draft {
-        let root = Node { value: Value::Table(entries), spot: Spot::default() };
-        let top = self.table(&root, root.spot, String::new(), keys::TOP);
+/// The generic reader, and what only a model needs.
+pub(super) struct ModelReader<'s> {
+    pub(super) reader: Reader<'s>,
+    /// The laws that components of kind `custom` may name.
+    pub(super) laws: &'s Registry,
+}
+
+impl<'s> Deref for ModelReader<'s> {
+    type Target = Reader<'s>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.reader
+    }
+}
+
+impl DerefMut for ModelReader<'_> {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.reader
+    }
+}
+
+impl ModelReader<'_> {
+    /// Reads all tables of a model.
+    pub(super) fn draft(&mut self, top: &Fields<'_>) -> Draft {
         let mut draft = Draft::default();
-        if let Some(node) = top.get("constants") {
-            self.constants(node);
-        }
         draft.name = top.get("name").and_then(|n| self.text(n, "name")).map(|n| n.text);
         match top.get("up").and_then(|n| self.text(n, "up")) {
             Some(up) if up.text == "z" => draft.up = UpAxis::Z,
             Some(up) if up.text != "y" => {
-                let message = format!("`up` is `{}`", up.text);
-                self.sources.error(up.spot, "model/up", message, "give \"y\" or \"z\"");
+                let message = format!("unknown up axis `{}`", up.text);
+                self.texts.error(up.spot, "model/up", message, "give \"y\" or \"z\"");
             }
             _ => {}
         }
@@ -52,48 +69,30 @@ impl Reader<'_> {
         }
         draft.sort();
         if let Some(mirror) = top.get("mirror").and_then(|n| self.mirror(n)) {
-            mirror.complete(&mut draft, self.sources);
+            mirror.complete(&mut draft, self.reader.texts);
             size::both_sides(&mirror, &mut draft);
         }
         draft
     }
 
-    /// The constants in the order of the text: each may use those before it.
-    fn constants(&mut self, node: &Node) {
-        let entries = self.entries(node, "constants");
-        let unknown = entries.iter().map(|e| (e.key.text.clone(), Constant::Below));
-        self.constants = unknown.collect();
-        for entry in entries {
-            let constant = match self.number(&entry.node, &entry.key.text) {
-                Some(number) => Constant::Is(number),
-                None => Constant::Wrong,
-            };
-            self.constants.insert(entry.key.text.clone(), constant);
-        }
-    }
-
     fn mirror(&mut self, node: &Node) -> Option<Mirror> {
         let fields = self.table(node, node.spot, "mirror".to_owned(), keys::MIRROR);
         let mut texts = ["plane", "from", "to"].map(|key| {
-            let Some(node) = fields.get(key) else {
-                let wanted = "a mirror such as { plane = \"z\", from = \"_r\", to = \"_l\" }";
-                self.missing(&fields, key, wanted);
-                return None;
-            };
-            self.text(node, key)
+            let wanted = "a mirror such as { plane = \"z\", from = \"_r\", to = \"_l\" }";
+            self.required(&fields, key, wanted).and_then(|node| self.text(node, key))
         });
         let [plane, from, to] = texts.each_mut().map(Option::take);
         let (plane, from, to) = (plane?, from?, to?);
         if from.text.is_empty() || from.text == to.text {
-            let message = "the two ends of names are the same";
-            let help = "give different ones, such as from = \"_r\", to = \"_l\"";
-            self.sources.error(from.spot, "model/mirror", message, help);
+            let message = "`from` and `to` are the same";
+            let help = "give different endings of names, such as from = \"_r\", to = \"_l\"";
+            self.texts.error(from.spot, "model/mirror", message, help);
             return None;
         }
         let Some(axis) = ["x", "y", "z"].iter().position(|a| *a == plane.text) else {
-            let message = format!("`plane` is `{}`", plane.text);
-            let help = "give the axis that is reversed: \"x\", \"y\" or \"z\"";
-            self.sources.error(plane.spot, "model/mirror", message, help);
+            let message = format!("unknown mirror plane `{}`", plane.text);
+            let help = "give the axis normal to it: \"x\", \"y\" or \"z\"";
+            self.texts.error(plane.spot, "model/mirror", message, help);
             return None;
         };
         Some(Mirror { axis, from: from.text, to: to.text })

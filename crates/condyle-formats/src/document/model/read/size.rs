@@ -1,32 +1,27 @@
-//! Size groups: segments that grow together.
+//! Size groups: segments that are scaled by one factor.
 
-use super::super::draft::{Draft, SizeDraft};
-use super::super::fields::Reader;
-use super::super::keys;
-use super::super::mirror::Mirror;
-use super::super::source::Name;
-use super::super::tree::Entry;
+use super::ModelReader;
+use crate::document::model::draft::{Draft, SizeDraft};
+use crate::document::model::keys;
+use crate::document::model::mirror::Mirror;
+use crate::document::texts::Name;
+use crate::document::tree::Entry;
 use std::collections::HashSet;
 
-impl Reader<'_> {
+impl ModelReader<'_> {
     pub(super) fn size(&mut self, draft: &mut Draft, entry: &Entry) {
         let name = entry.key.clone();
         let label = format!("size.{}", name.text);
         let fields = self.table(&entry.node, name.spot, label, keys::SIZE);
-        let segments = match fields.get("segments") {
-            Some(node) => self.names(node, "segments").0,
-            None => {
-                self.missing(&fields, "segments", "the segments that grow together");
-                vec![]
-            }
-        };
+        let node = self.required(&fields, "segments", "the segments of the group");
+        let segments = node.map(|node| self.names(node, "segments").0).unwrap_or_default();
         draft.sizes.push(SizeDraft { name, segments });
     }
 }
 
-/// Lists the other side of each segment beside it, unless that is listed itself, in any group.
+/// Adds the mirrored segment of each listed one, unless it is listed in any group.
 ///
-/// Groups keep their names: both sides grow alike where one is written.
+/// Groups keep their names: one factor scales both sides.
 pub(super) fn both_sides(mirror: &Mirror, draft: &mut Draft) {
     let all = draft.sizes.iter().flat_map(|size| &size.segments);
     let listed: HashSet<String> = all.map(|name| name.text.clone()).collect();

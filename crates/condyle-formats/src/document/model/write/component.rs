@@ -1,4 +1,4 @@
-//! Components, each under its kind.
+//! The inputs and parameters of components.
 
 use super::{Writer, frame, function, key, knots, line, number, numbers, several_of, text, vector};
 use condyle_math::Vec3;

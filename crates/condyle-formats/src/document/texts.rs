@@ -1,18 +1,18 @@
-//! The texts of a document, places in them, and what is wrong with them.
+//! The texts of a document, places in them, and the errors and warnings about them.
 
 use condyle_diagnostics::{Diagnostic, Error, Place, Severity};
 
-/// How many errors are kept; a file that has more has one reason for them.
+/// How many errors are kept; more than that have a common cause.
 const MOST_ERRORS: usize = 50;
 
-/// Where something stands: the number of its file, and the byte where it begins.
+/// A place: the number of its text, and the byte where it begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Spot {
     pub(super) file: u32,
     pub(super) start: usize,
 }
 
-/// A name that a document gives, and where.
+/// A name in a document, and its place.
 #[derive(Clone, Debug)]
 pub(super) struct Name {
     pub(super) text: String,
@@ -37,16 +37,16 @@ struct File {
     angles: Angles,
 }
 
-/// All texts of a document and what was said about them.
+/// All texts of a document, with the errors and warnings about them.
 #[derive(Default)]
-pub(super) struct Sources {
+pub(super) struct Texts {
     files: Vec<File>,
     errors: Vec<Diagnostic>,
     surplus: usize,
     warnings: Vec<Diagnostic>,
 }
 
-impl Sources {
+impl Texts {
     /// Adds a text and returns its number.
     pub(super) fn add(&mut self, name: &str, text: &str, included_at: Option<Spot>) -> u32 {
         let breaks = text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i + 1);
@@ -89,7 +89,7 @@ impl Sources {
         Place { line, column, byte: Some(start as u64) }
     }
 
-    /// Something said of a spot. What stands in an included text is said where it is included.
+    /// A diagnostic about a spot. In an included text, it is placed at the line that includes it.
     pub(super) fn said(
         &self,
         spot: Spot,
@@ -126,7 +126,7 @@ impl Sources {
         self.error_with(spot, code, || (message.into(), help.into()));
     }
 
-    /// An error whose message and help are made only if it is kept.
+    /// An error whose message and help are computed only if it is kept.
     pub(super) fn error_with<M: Into<String>>(
         &mut self,
         spot: Spot,
@@ -154,12 +154,12 @@ impl Sources {
         !self.errors.is_empty()
     }
 
-    /// Errors in the order of the text, or else the warnings.
+    /// The warnings, or all errors in the order of the text.
     pub(super) fn finish(mut self) -> Result<Vec<Diagnostic>, Error> {
         self.errors.sort_by_key(|e| e.place.map_or(u64::MAX, |p| p.byte.unwrap_or(0)));
         if self.surplus > 0 {
             let message = format!("and {} more errors", self.surplus);
-            self.errors.push(Diagnostic::error("model/more", message));
+            self.errors.push(Diagnostic::error("document/more", message));
         }
         Error::of(self.errors).map_or(Ok(self.warnings), Err)
     }

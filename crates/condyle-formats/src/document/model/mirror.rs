@@ -1,26 +1,26 @@
-//! One side of a body made into the other: D = diag(1, 1, -1) for a plane z, and so on.
+//! The mirrored side of a body. D is the reflection: diag(1, 1, -1) for a plane z, and so on.
 //!
-//! Coordinates keep their values: where both sides have the same ones, the pose of the made side is
-//! D·T·D of the written one. A point p becomes D·p, a frame D·T·D, the axis of a slide D·a, the axis
-//! of a turn -D·a (it is a pseudovector). Only an orientation cannot keep its value, since it *is* a
+//! Coordinates keep their values: for equal values on both sides, the transform of the mirrored side
+//! is D·T·D of the written one. A point p becomes D·p, a frame D·T·D, the axis of a slide D·a, the axis
+//! of a turn -D·a (it is a pseudovector). Only an orientation changes its value, since it *is* a
 //! rotation: (v, w) on one side is (-D·v, w) on the other.
 //!
-//! Components whose formula prefers an axis are made of the same component and others:
+//! A component whose formula singles out an axis is mirrored by the same component and others:
 //!
-//! - an ellipsoid mirrored at x or y takes two of its angles negated; at z, where its own pole is
-//!   reversed, D·Rx(a)·Ry(b)·Rz(c)·D = Rx(π-a)·Ry(b)·Rz(-c)·Rx(π) and the pole comes out right;
-//! - a column takes the negated angles; its rest direction y cannot be mirrored at y.
+//! - an ellipsoid mirrored at x or y has two of its angles negated; at z, which reverses its pole,
+//!   D·Rx(a)·Ry(b)·Rz(c)·D = Rx(π-a)·Ry(b)·Rz(-c)·Rx(π);
+//! - a column has its angles negated; its rest direction y cannot be mirrored at y.
 //!
 //! A cone's directions become D·d, the axes of its angles -D·a, and its bounds of twist \[-hi, -lo\]:
-//! D·R(r, τ)·D = R(D·r, -τ). Factors and amounts of scales and shears keep their values with D·a. What
-//! a user's law would be on the other side nobody knows: both sides are written.
+//! D·R(r, τ)·D = R(D·r, -τ). Factors and amounts of scales and shears keep their values with D·a. The
+//! mirror image of a custom law is not known, so that such a component cannot be mirrored.
 
+use super::blueprint::{Blueprint, Held};
 use super::draft::{
     ClosureDraft, ComponentDraft, ConditionDraft, CoordinateDraft, Draft, Holder, OutputDraft,
     SegmentDraft,
 };
-use super::law::{Held, Law};
-use super::source::{Name, Sources};
+use crate::document::texts::{Name, Texts};
 use condyle_math::function::{Function, SimmSpline};
 use condyle_math::{Affine, Mat3, Vec3};
 use condyle_model::CoordinateKind;
@@ -30,16 +30,16 @@ use std::collections::HashSet;
 use std::f64::consts::PI;
 
 pub(super) struct Mirror {
-    /// The axis that is reversed.
+    /// The axis normal to the plane.
     pub(super) axis: usize,
-    /// How names end that are mirrored, and what takes the place of that end.
+    /// How the names of the written side end, and those of the mirrored side.
     pub(super) from: String,
     pub(super) to: String,
 }
 
 impl Mirror {
-    /// Adds what is not written.
-    pub(super) fn complete(&self, draft: &mut Draft, sources: &mut Sources) {
+    /// Adds everything of the other side that is not written.
+    pub(super) fn complete(&self, draft: &mut Draft, texts: &mut Texts) {
         let written = |names: &mut dyn Iterator<Item = &Name>| -> HashSet<String> {
             names.map(|n| n.text.clone()).collect()
         };
@@ -88,7 +88,7 @@ impl Mirror {
 
         let mut made = vec![];
         for component in draft.components.iter().filter(|c| news(&sets, &c.set)) {
-            if self.component(component, sources, &mut made).is_none() {
+            if self.component(component, texts, &mut made).is_none() {
                 let name = self.name(&component.name.text);
                 draft.broken.insert((self.name(&component.set), name));
             }
@@ -177,7 +177,7 @@ impl Mirror {
     }
 
     fn frame(&self, frame: Affine) -> Affine {
-        // D·M·D changes the sign of what mixes the reversed axis with another.
+        // D·M·D changes the sign of entries that mix the reversed axis with another.
         let column =
             |c: usize, v: Vec3| if c == self.axis { -self.point(v) } else { self.point(v) };
         let m = frame.linear;
@@ -203,7 +203,7 @@ impl Mirror {
         splines
     }
 
-    /// The same cone on the other side; none if rounding has made one of it that is none.
+    /// The mirrored cone; `None` if rounding makes it invalid.
     fn cone(&self, cone: &Cone) -> Option<Cone> {
         let twist = |bounds: Option<[f64; 2]>| bounds.map(|[low, high]| [-high, -low]);
         let point =
@@ -221,15 +221,15 @@ impl Mirror {
         }
     }
 
-    fn gliding(&self, law: &Gliding) -> Option<Gliding> {
+    fn gliding(&self, gliding: &Gliding) -> Option<Gliding> {
         let pair = |p: &ContactPair| ContactPair {
             first: self.point(p.first),
             second: self.point(p.second),
             at: p.at,
         };
-        let pairs = law.pairs().iter().map(pair).collect();
-        let pose = self.frame(law.ellipsoid_in_surface());
-        Gliding::new(pose, law.radii(), self.turning(law.axis()), pairs).ok()
+        let pairs = gliding.pairs().iter().map(pair).collect();
+        let pose = self.frame(gliding.ellipsoid_in_surface());
+        Gliding::new(pose, gliding.radii(), self.turning(gliding.axis()), pairs).ok()
     }
 
     fn condition(&self, condition: &ConditionDraft) -> ConditionDraft {
@@ -250,11 +250,11 @@ impl Mirror {
         }
     }
 
-    /// Adds a component to those made; none if it cannot be, which is reported.
+    /// Adds the mirrored component to `made`; `None` after an error.
     fn component(
         &self,
         component: &ComponentDraft,
-        sources: &mut Sources,
+        texts: &mut Texts,
         made: &mut Vec<ComponentDraft>,
     ) -> Option<()> {
         let set = self.name(&component.set);
@@ -262,67 +262,69 @@ impl Mirror {
         let mut ports: Vec<Name> = component.ports.iter().map(|p| self.port(p)).collect();
         let part =
             |what: &str| Name { text: format!("{}_mirror_{what}", name.text), spot: name.spot };
-        // The argument at one port by way of slope·x + intercept.
+        // Replaces the input x at a port by slope·x + intercept.
         let mut through = |port: &mut Name, what: &str, slope: f64, intercept: f64| {
             let between = part(what);
             made.push(ComponentDraft {
                 set: set.clone(),
                 name: between.clone(),
-                law: Law::Map(vec![Function::linear(slope, intercept)]),
+                blueprint: Blueprint::Map(vec![Function::linear(slope, intercept)]),
                 ports: vec![port.clone()],
             });
             *port = Name { text: escaped(&between.text), spot: between.spot };
         };
         let mut refuse = |what: &str, help: &str| {
             let message = format!("{what} `{}` cannot be mirrored", component.name.text);
-            sources.error(component.name.spot, "model/mirror", message, help);
+            texts.error(component.name.spot, "model/mirror", message, help);
             None
         };
-        let law = match &component.law {
-            Law::Scale(along) => Law::Scale(match along {
+        let blueprint = match &component.blueprint {
+            Blueprint::Scale(along) => Blueprint::Scale(match along {
                 Along::Everywhere => Along::Everywhere,
                 Along::Axis(axis) => Along::Axis(self.point(*axis)),
                 Along::Volume(axis) => Along::Volume(self.point(*axis)),
             }),
-            Law::Shear { along, across } => {
-                Law::Shear { along: self.point(*along), across: self.point(*across) }
+            Blueprint::Shear { along, across } => {
+                Blueprint::Shear { along: self.point(*along), across: self.point(*across) }
             }
-            Law::Curve { path, heading } => {
+            Blueprint::Curve { path, heading } => {
                 let heading = heading.map(|Heading { forward, up }| Heading {
                     forward: self.point(forward),
                     up: self.point(up),
                 });
-                Law::Curve { path: self.path(path), heading }
+                Blueprint::Curve { path: self.path(path), heading }
             }
-            Law::Cone(held, cone) => match self.cone(cone) {
-                Some(cone) => Law::Cone(self.held(held), cone),
-                None => return refuse("the cone", "write both sides out"),
+            Blueprint::Cone(held, cone) => match self.cone(cone) {
+                Some(cone) => Blueprint::Cone(self.held(held), cone),
+                None => return refuse("the cone", "write both sides"),
             },
-            Law::Contact { segment, surface, before, law } => match self.gliding(law) {
-                Some(law) => {
+            Blueprint::Contact { segment, surface, before, gliding } => match self.gliding(gliding)
+            {
+                Some(gliding) => {
                     let (segment, surface) = (self.renamed(segment), self.renamed(surface));
-                    Law::Contact { segment, surface, before: *before, law }
+                    Blueprint::Contact { segment, surface, before: *before, gliding }
                 }
-                None => return refuse("the contact", "write both sides out"),
+                None => return refuse("the contact", "write both sides"),
             },
-            Law::Custom(custom) => {
+            Blueprint::Custom(custom) => {
                 let help = format!(
-                    "nobody but its author knows what `{}` is on the other side: write both \
-                     sides out",
+                    "the mirror image of law `{}` is not known: write both sides",
                     custom.law
                 );
-                return refuse("the user's law", &help);
+                return refuse("the custom component", &help);
             }
-            Law::Rotate(axis) => Law::Rotate(self.turning(*axis)),
-            Law::Pivot(axis, centre) => Law::Pivot(self.turning(*axis), self.centre(centre)),
-            Law::Compensate { segment, ancestors, weight } => Law::Compensate {
+            Blueprint::Rotate(axis) => Blueprint::Rotate(self.turning(*axis)),
+            Blueprint::Pivot(axis, centre) => {
+                Blueprint::Pivot(self.turning(*axis), self.centre(centre))
+            }
+            Blueprint::Compensate { segment, ancestors, weight } => Blueprint::Compensate {
                 segment: self.renamed(segment),
                 ancestors: ancestors.iter().map(|a| self.renamed(a)).collect(),
                 weight: *weight,
             },
-            Law::Translate(axis) => Law::Translate(self.point(*axis)),
-            Law::Place(frame) => Law::Place(self.frame(*frame)),
-            Law::Ellipsoid(radii, axis) if ports.len() == 3 => {
+            Blueprint::Translate(axis) => Blueprint::Translate(self.point(*axis)),
+            Blueprint::Place(frame) => Blueprint::Place(self.frame(*frame)),
+            Blueprint::Ellipsoid(radii, axis) if ports.len() == 3 => {
                 // Slopes and intercepts of the three angles.
                 let [x, y, z] = match self.axis {
                     0 => [(1.0, 0.0), (-1.0, 0.0), (-1.0, 0.0)],
@@ -338,30 +340,30 @@ impl Mirror {
                 }
                 if self.axis == 2 {
                     let (surface, half) = (part("surface"), part("half_turn"));
-                    let law = Law::Ellipsoid(*radii, *axis);
+                    let blueprint = Blueprint::Ellipsoid(*radii, *axis);
                     let set = set.clone();
                     let name = surface.clone();
-                    made.push(ComponentDraft { set: set.clone(), name, law, ports });
+                    made.push(ComponentDraft { set: set.clone(), name, blueprint, ports });
                     let turn =
                         Affine::from_rotation(Mat3::from_columns(Vec3::X, -Vec3::Y, -Vec3::Z));
-                    let law = Law::Place(turn);
+                    let blueprint = Blueprint::Place(turn);
                     let name = half.clone();
-                    made.push(ComponentDraft { set, name, law, ports: vec![] });
+                    made.push(ComponentDraft { set, name, blueprint, ports: vec![] });
                     ports = [surface, half]
                         .map(|n| Name { text: escaped(&n.text), spot: n.spot })
                         .to_vec();
-                    Law::Product
+                    Blueprint::Product
                 } else {
-                    Law::Ellipsoid(*radii, *axis)
+                    Blueprint::Ellipsoid(*radii, *axis)
                 }
             }
-            Law::ConstantCurvature { neutral, length } if ports.len() == 3 => {
+            Blueprint::ConstantCurvature { neutral, length } if ports.len() == 3 => {
                 // In the order x, z, y; a turn about an axis keeps its sign if that axis is reversed.
                 let signs = match self.axis {
                     0 => [1.0, -1.0, -1.0],
                     2 => [-1.0, 1.0, -1.0],
                     _ => {
-                        let help = "it stands along y: write both sides out, or turn its frame";
+                        let help = "its rest direction is y: write both sides, or turn its frame";
                         return refuse("the column", help);
                     }
                 };
@@ -372,16 +374,16 @@ impl Mirror {
                     }
                 }
                 let neutral = std::array::from_fn(|i| signs[i] * neutral[i]);
-                Law::ConstantCurvature { neutral, length: *length }
+                Blueprint::ConstantCurvature { neutral, length: *length }
             }
             other => other.clone(),
         };
-        made.push(ComponentDraft { set, name, law, ports });
+        made.push(ComponentDraft { set, name, blueprint, ports });
         Some(())
     }
 }
 
-/// A name as it stands at a port, where a dot separates names.
+/// A name as written at a port, where dots separate names.
 pub(super) fn escaped(name: &str) -> String {
     name.replace('\\', "\\\\").replace('.', "\\.")
 }

@@ -1,0 +1,158 @@
+//! A document and the texts that it includes, merged into one table.
+
+use super::Form;
+use super::head;
+use super::texts::{Name, Spot, Texts};
+use super::tree::{Entry, Node, Value, parse};
+use std::collections::HashMap;
+
+/// How deep includes may nest, and how many texts may be included in all.
+const MOST_NESTED: usize = 8;
+const MOST_INCLUDED: usize = 64;
+
+/// Loads a text and all that it includes into one table; `None` after an error of the text itself.
+pub(super) fn load(
+    texts: &mut Texts,
+    form: &Form,
+    text: &str,
+    include: &mut dyn FnMut(&str) -> Result<String, String>,
+) -> Option<Vec<Entry>> {
+    Loader { texts, form, include, open: vec![] }.load("", text, None)
+}
+
+struct Loader<'a> {
+    texts: &'a mut Texts,
+    form: &'a Form,
+    include: &'a mut dyn FnMut(&str) -> Result<String, String>,
+    /// The texts that are being read, each included by the one before it.
+    open: Vec<String>,
+}
+
+impl Loader<'_> {
+    /// Recursive over includes, at most [`MOST_NESTED`] deep.
+    fn load(&mut self, name: &str, text: &str, at: Option<Spot>) -> Option<Vec<Entry>> {
+        let file = self.texts.add(name, text, at);
+        let mut entries = parse(self.texts, file, text)?;
+        head::check(self.texts, file, &entries, self.form.kind)?;
+        let included = entries.iter().position(|e| e.key.text == "include");
+        let included = included.map(|index| entries.remove(index));
+        if at.is_some() {
+            let own = [&["condyle", "kind", "angles", "name"], self.form.own].concat();
+            entries.retain(|e| !own.contains(&e.key.text.as_str()));
+        }
+        self.open.push(name.to_owned());
+        for wanted in included.map(|e| self.paths(e.node)).unwrap_or_default() {
+            // Errors of nested includes are reported at the line of the document itself.
+            let line = at.unwrap_or(wanted.spot);
+            if let Some(more) = self.included(name, &wanted, line) {
+                let (constants, more) =
+                    more.into_iter().partition(|entry| entry.key.text == "constants");
+                merge(self.texts, &mut entries, more, false);
+                merge(self.texts, &mut entries, constants, true);
+            }
+        }
+        self.open.pop();
+        Some(entries)
+    }
+
+    fn included(&mut self, from: &str, wanted: &Name, line: Spot) -> Option<Vec<Entry>> {
+        let path = beside(from, &wanted.text);
+        let (code, message, help) = if self.open.contains(&path) {
+            let mut circle: Vec<&str> =
+                self.open.iter().skip_while(|n| **n != path).map(String::as_str).collect();
+            circle.push(&path);
+            let message = format!("texts include each other in a circle: {}", circle.join(" -> "));
+            ("document/include-cycle", message, "remove one of these includes".to_owned())
+        } else if self.texts.has(&path) {
+            return None;
+        } else if self.open.len() > MOST_NESTED || self.texts.len() > MOST_INCLUDED {
+            let message = format!("too many includes: `{path}` is not read");
+            let help = format!(
+                "include at most {MOST_INCLUDED} documents, nested at most {MOST_NESTED} deep"
+            );
+            ("document/include-depth", message, help)
+        } else {
+            match (self.include)(&path) {
+                Ok(text) => return self.load(&path, &text, Some(line)),
+                Err(why) => {
+                    let message = format!("`{path}` cannot be included: {why}");
+                    let kind = self.form.kind.name();
+                    let help = format!(
+                        "give the path of another document of kind `{kind}`, from this one's folder"
+                    );
+                    ("document/include", message, help)
+                }
+            }
+        };
+        self.texts.error(wanted.spot, code, message, help);
+        None
+    }
+
+    fn paths(&mut self, node: Node) -> Vec<Name> {
+        let mut paths = vec![];
+        let spot = node.spot;
+        let list = match node.value {
+            Value::List(list) => list,
+            value => vec![Node { value, spot }],
+        };
+        for node in list {
+            match node.value {
+                Value::Text(text) => paths.push(Name { text, spot: node.spot }),
+                _ => self.texts.error(
+                    node.spot,
+                    "document/type",
+                    format!("`include` holds {}", node.describe()),
+                    "give the paths of other documents, such as [\"hand.toml\"]",
+                ),
+            }
+        }
+        paths
+    }
+}
+
+/// A path that a text gives relative to its own folder, relative to the document's folder.
+fn beside(from: &str, name: &str) -> String {
+    let name = name.replace('\\', "/");
+    let folder = from.rsplit_once('/').map_or("", |(folder, _)| folder);
+    let whole =
+        if name.starts_with('/') || folder.is_empty() { name } else { format!("{folder}/{name}") };
+    let mut parts: Vec<&str> = vec![];
+    for part in whole.split('/') {
+        match part {
+            "." => {}
+            ".." if parts.last().is_some_and(|p| *p != ".." && !p.is_empty()) => {
+                parts.pop();
+            }
+            _ => parts.push(part),
+        }
+    }
+    parts.join("/")
+}
+
+/// Adds the entries of an included text. Tables are merged; any other key may be given once.
+/// Recursive as deep as the trees are.
+///
+/// With `ours`, used for constants, the value of the including text is kept where both give one.
+fn merge(texts: &mut Texts, into: &mut Vec<Entry>, more: Vec<Entry>, ours: bool) {
+    let index: HashMap<String, usize> =
+        into.iter().enumerate().map(|(i, e)| (e.key.text.clone(), i)).collect();
+    for entry in more {
+        let Some(&known) = index.get(&entry.key.text) else {
+            into.push(entry);
+            continue;
+        };
+        match (&mut into[known].node.value, entry.node.value) {
+            (Value::Table(known), Value::Table(more)) => merge(texts, known, more, ours),
+            _ if ours => {}
+            // Equal values are no conflict, such as one mirror repeated in several texts.
+            (Value::Text(known), Value::Text(more)) if *known == more => {}
+            (Value::Number(known), Value::Number(more)) if *known == more => {}
+            _ => {
+                let key = &entry.key.text;
+                let message =
+                    format!("`{key}` is also given by the document that includes this one");
+                texts.error(entry.key.spot, "document/duplicate", message, "give it once");
+            }
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! Documents of kind `model`: segments, joints, and markers.
+//!
+//! ```text
+//! document   = the head of every document, up = "y"|"z", mirror, and the tables below
+//! segment.S  = parent, at, turn, order, matrix (the joint in the parent),
+//!              joint_at, joint_turn, joint_order, joint_matrix (the joint in the segment)
+//! joint.J    = segment, type and the keys of that type, coordinates, coordinate.C
+//! joint_set.J.coordinate.C   = kind, default, range, enforced, locked, unit, source, follows
+//! joint_set.J.component.K.X  = the inputs and parameters of a component of kind X
+//! joint_set.J.output         = SEGMENT = "K", or a list of factors
+//! marker.M   = segment, at
+//! size.G     = segments (that are scaled by one factor)
+//! closure.L  = points (and distance), frames, or coupling
+//! port       = "name" in the same joint set, "set.name" in another, ".2" for a second output
+//! ```
+//!
+//! The manual with examples is in `docs/model-format/`. Lengths are metres; angles are radians, or
+//! degrees where the document says so; arguments and values of functions are radians and metres
+//! unless their `in` and `out` say otherwise.
+//!
+//! [`read`] reports wrong types, unknown keys and names with the nearest known one, missing inputs,
+//! duplicate names, and what [`ModelBuilder`](condyle_model::ModelBuilder) finds. A [`Document`]
+//! keeps the text it was read from, so that saving it loses nothing; [`write()`] writes any model,
+//! with everything expanded.
+
+mod blueprint;
+mod draft;
+mod joint;
+mod keys;
+mod mirror;
+mod read;
+mod resolve;
+mod write;
+
+pub use keys::keys;
+pub use write::write;
+
+use self::read::ModelReader;
+use super::{Form, Kind, read_kind};
+use condyle_diagnostics::{Error, Read};
+use condyle_model::Model;
+use condyle_model::component::Registry;
+
+const FORM: Form = Form { kind: Kind::Model, keys: keys::TOP, own: &["up"] };
+
+/// A model document: the model, and the text that describes it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Document {
+    /// The model, with includes, constants and the mirrored side resolved.
+    pub model: Model,
+    /// The text, comments and all. Saving a document writes this.
+    pub source: String,
+}
+
+impl Document {
+    /// A document of a model that was not read from text.
+    #[must_use]
+    pub fn of(model: Model) -> Self {
+        let source = write(&model);
+        Self { model, source }
+    }
+}
+
+/// Reads a model document. `include` gives the text of another one by its path, as seen from the
+/// place of this one; an error of it is a sentence.
+///
+/// # Errors
+/// Everything that is wrong, in the order of the text.
+///
+/// ```
+/// use condyle_formats::document;
+/// let text = r#"
+/// condyle = 1
+/// kind = "model"
+/// angles = "deg"
+///
+/// [segment.thigh]
+/// [segment.shank]
+/// parent = "thigh"
+/// at = [0, -0.42, 0]
+///
+/// [joint.knee]
+/// type = "hinge"
+/// segment = "shank"
+/// axis = [0, 0, -1]
+/// coordinate.angle = { range = [0, 140] }
+/// "#;
+/// let document = document::read(text, &mut |_| Err("there is none".into())).unwrap().value;
+/// let range = document.model.coordinates()[0].range;
+/// assert_eq!(range.upper, Some(140f64.to_radians()));
+///
+/// let wrong = text.replace("parent", "parnet");
+/// let errors = document::read(&wrong, &mut |_| Err("there is none".into())).unwrap_err();
+/// assert_eq!(
+///     errors[0].to_string(),
+///     "line 8, column 1: unknown key `parnet` in [segment.shank] (did you mean `parent`?)",
+/// );
+/// ```
+pub fn read(
+    text: &str,
+    include: &mut dyn FnMut(&str) -> Result<String, String>,
+) -> Result<Read<Document>, Error> {
+    read_with(text, include, &Registry::default())
+}
+
+/// Reads a model document whose components of kind `custom` name these laws.
+///
+/// # Errors
+/// As [`read`], and laws that are not registered, or not with these parameters.
+///
+/// ```
+/// use condyle_formats::document;
+/// use condyle_math::{Affine, Scalar, Vec3};
+/// use condyle_model::component::{Law, Registry};
+///
+/// /// A bone that is lifted with the square of an angle.
+/// #[derive(Debug)]
+/// struct Lift(f64);
+/// impl Law for Lift {
+///     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
+///         let height = inputs[0] * inputs[0] * S::from_f64(self.0);
+///         Affine::from_translation(Vec3::new(S::zero(), height, S::zero()))
+///     }
+/// }
+/// let mut laws = Registry::default();
+/// laws.register("lift", &["angle"], |parameters| {
+///     let height = parameters.get("height").and_then(|list| list.first());
+///     Ok(Lift(*height.ok_or("it needs a `height` in metres")?))
+/// });
+///
+/// let text = r#"
+/// condyle = 1
+/// kind = "model"
+/// [segment.scapula]
+/// [joint_set.girdle.coordinate.elevation]
+/// [joint_set.girdle.component.raise.custom]
+/// law = "lift"
+/// inputs = ["elevation"]
+/// parameters = { height = 0.02 }
+/// [joint_set.girdle.output]
+/// scapula = "raise"
+/// "#;
+/// let mut alone = |_: &str| Err("it stands alone".into());
+/// assert!(document::read_with(text, &mut alone, &laws).is_ok());
+/// let errors = document::read(text, &mut alone).unwrap_err();
+/// assert!(errors[0].to_string().starts_with("line 7, column 7: no law `lift` is registered"));
+/// ```
+pub fn read_with(
+    text: &str,
+    include: &mut dyn FnMut(&str) -> Result<String, String>,
+    laws: &Registry,
+) -> Result<Read<Document>, Error> {
+    let read = read_kind(&FORM, text, include, |reader, top| {
+        let mut reader = ModelReader { reader, laws };
+        let draft = reader.draft(top);
+        resolve::build(draft, reader.texts)
+    })?;
+    Ok(read.map(|model| Document { model, source: text.to_owned() }))
+}
