@@ -143,9 +143,7 @@ pub const FORMATS: &[Format] = &[
         endings: &["toml"],
         reads: &[Kind::Model],
         writes: &[Kind::Model],
-        sniff: |bytes| {
-            starts(bytes, 4096).lines().any(|line| line.trim_start().starts_with("condyle ="))
-        },
+        sniff: |bytes| document::kind(bytes).is_some(),
         read: |bytes, include| {
             let read = document::read(utf8(bytes)?, include)?;
             Ok(read.map(Content::Document))
