@@ -7,6 +7,7 @@ mod doc;
 mod fmt;
 mod fuzz;
 mod instructions;
+mod outside;
 mod test;
 
 use crate::outcome::{Context, Outcome};
@@ -37,6 +38,11 @@ pub(crate) const CHECKS: &[Check] = &[
     Check { name: "clippy", what: "no warning in any target", run: clippy::run },
     Check { name: "doc", what: "the documentation builds without a warning", run: doc::run },
     Check { name: "test", what: "the README's test command", run: test::run },
+    Check {
+        name: "outside",
+        what: "what a user builds: features, a program, the browser",
+        run: outside::run,
+    },
     Check { name: "fuzz", what: "the fuzz targets build and take their seeds", run: fuzz::run },
     Check {
         name: "instructions",
