@@ -2,7 +2,7 @@
 
 use crate::{chain, full_body, walk};
 use condyle_model::{Jacobian, Mode, Pose, Program};
-use condyle_track::{MarkerTask, Options, Scratch, Tasks, Tracker};
+use condyle_track::{MarkerTarget, Rules, Scratch, Targets, Tracker};
 use std::hint::black_box;
 
 /// A kernel by name.
@@ -63,14 +63,14 @@ fn track_frame(repeats: usize) {
     let model = full_body::model();
     let motion = walk::motion(&model, 65);
     let recorded = walk::recorded(&model, &motion, 0.002);
-    let markers = (0..model.markers().len()).map(|marker| MarkerTask { marker, weight: 1.0 });
-    let tasks = Tasks { markers: markers.collect(), ..Tasks::default() };
-    let tracker = Tracker::new(&model, tasks, Options::default());
+    let markers = (0..model.markers().len()).map(|marker| MarkerTarget { marker, weight: 1.0 });
+    let targets = Targets { markers: markers.collect(), ..Targets::default() };
+    let tracker = Tracker::new(model, targets, Rules::default());
     let mut scratch = Scratch::new(&tracker);
     for i in 0..repeats {
         let frame = i % 64;
         let answer =
-            tracker.solve_frame(&mut scratch, &recorded[frame + 1], frame + 1, &[&motion[frame]]);
+            tracker.solve_frame(&mut scratch, &recorded[frame + 1], frame + 1, &motion[frame]);
         assert!(black_box(answer).status.is_solved());
     }
 }

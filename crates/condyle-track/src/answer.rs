@@ -35,11 +35,13 @@ impl FrameStatus {
 pub struct FrameAnswer {
     /// The stored numbers of all coordinates, coupled ones as their leaders determine them.
     pub coordinates: Vec<f64>,
-    /// F, without the prior.
+    /// F in m², without the prior.
     pub objective: f64,
+    /// P in m²: what posture targets add to what is minimised.
+    pub posture: f64,
     /// Σ w |e|² in m².
     pub weighted_squares: f64,
-    /// Distance of each marker task in metres; NaN where the marker is not seen or has no weight.
+    /// Distance of each marker target in metres; NaN where the marker is not seen or has no weight.
     pub marker_errors: Vec<f64>,
     /// Largest loop error in metres or radians.
     pub closure_error: f64,
@@ -50,6 +52,25 @@ pub struct FrameAnswer {
 }
 
 impl FrameAnswer {
+    /// A posture that nothing is known about yet: where a solve begins.
+    pub fn start(coordinates: &[f64]) -> Self {
+        Self {
+            coordinates: coordinates.to_vec(),
+            objective: 0.0,
+            posture: 0.0,
+            weighted_squares: 0.0,
+            marker_errors: vec![],
+            closure_error: 0.0,
+            status: FrameStatus::NoMarkers,
+            iterations: 0,
+        }
+    }
+
+    /// F + P: what answers are compared by.
+    pub fn minimised(&self) -> f64 {
+        self.objective + self.posture
+    }
+
     /// Root mean square of the marker errors in metres, unweighted; 0 without markers.
     pub fn rms(&self) -> f64 {
         let seen = self.marker_errors.iter().filter(|e| e.is_finite());
@@ -63,12 +84,12 @@ impl FrameAnswer {
     }
 }
 
-/// Whether an answer beats another: met constraints first, then a clearly lower F.
+/// Whether an answer beats another: met constraints first, then a clearly lower F + P.
 pub(crate) fn better(a: &FrameAnswer, b: &FrameAnswer) -> bool {
     let broken = |answer: &FrameAnswer| answer.status == FrameStatus::Infeasible;
     match (broken(a), broken(b)) {
         (false, true) => true,
         (true, false) => false,
-        _ => a.objective < b.objective * (1.0 - 1e-6) - 1e-15,
+        _ => a.minimised() < b.minimised() * (1.0 - 1e-6) - 1e-15,
     }
 }

@@ -1,13 +1,13 @@
 //! Where the recorded markers come from.
 
-/// The recorded markers of each frame, in the order of the marker tasks.
+/// The recorded positions of each frame, in the order of the marker targets.
 pub trait Recorded: Sync {
-    /// Writes the markers of a frame.
-    fn targets(&self, frame: usize, targets: &mut Vec<Option<[f64; 3]>>);
+    /// Writes those of a frame, in metres; `None` where a marker was not seen.
+    fn positions(&self, frame: usize, seen: &mut Vec<Option<[f64; 3]>>);
 }
 
 impl<F: Fn(usize, &mut Vec<Option<[f64; 3]>>) + Sync> Recorded for F {
-    fn targets(&self, frame: usize, targets: &mut Vec<Option<[f64; 3]>>) {
-        self(frame, targets);
+    fn positions(&self, frame: usize, seen: &mut Vec<Option<[f64; 3]>>) {
+        self(frame, seen);
     }
 }

@@ -27,20 +27,21 @@ const LONGEST_HOLE: usize = 5;
 /// How often the weights of a frame are refined.
 pub(crate) const ROUNDS: usize = 3;
 
-/// The robust scale of a frame's marker errors: 1.5 medians, at least 5 mm.
-fn scale(errors: &[f64]) -> f64 {
-    let mut seen: Vec<f64> = errors.iter().copied().filter(|e| e.is_finite()).collect();
-    if seen.is_empty() {
+/// The robust scale of a frame's marker errors: 1.5 medians, at least 5 mm. `sorted` is a buffer.
+fn scale(errors: &[f64], sorted: &mut Vec<f64>) -> f64 {
+    sorted.clear();
+    sorted.extend(errors.iter().filter(|e| e.is_finite()));
+    if sorted.is_empty() {
         return LEAST_SCALE;
     }
-    let middle = seen.len() / 2;
-    let (_, median, _) = seen.select_nth_unstable_by(middle, f64::total_cmp);
+    let middle = sorted.len() / 2;
+    let (_, median, _) = sorted.select_nth_unstable_by(middle, f64::total_cmp);
     (1.5 * *median).max(LEAST_SCALE)
 }
 
 /// A factor for the weight of each marker, from the errors of a first fit.
 pub(crate) fn factors(errors: &[f64], factors: &mut Vec<f64>) {
-    let scale = 2.0 * scale(errors);
+    let scale = 2.0 * scale(errors, factors);
     factors.clear();
     factors.extend(errors.iter().map(|e| {
         let ratio = if e.is_finite() { e / scale } else { 0.0 };
@@ -48,40 +49,40 @@ pub(crate) fn factors(errors: &[f64], factors: &mut Vec<f64>) {
     }));
 }
 
-/// Two marker tasks whose labels are exchanged over a run of frames.
+/// Two marker targets whose labels are exchanged over a run of frames.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ExchangedTasks {
-    /// Positions among the marker tasks, the lower first.
-    pub tasks: [usize; 2],
+pub struct Exchanged {
+    /// Positions among the marker targets, the lower first.
+    pub markers: [usize; 2],
     /// The frames.
     pub frames: std::ops::Range<usize>,
 }
 
 /// Finds labels that stand for each other's marker, from the answers of a robust tracking.
 pub fn find_exchanged(
-    tracker: &Tracker<'_>,
+    tracker: &Tracker,
     scratch: &mut Scratch,
     recorded: &dyn Recorded,
     answers: &[FrameAnswer],
-) -> Vec<ExchangedTasks> {
+) -> Vec<Exchanged> {
     let mut found: Vec<([usize; 2], usize)> = vec![];
-    let mut targets = vec![];
+    let (mut seen, mut sorted) = (vec![], vec![]);
     for (frame, answer) in answers.iter().enumerate() {
-        let suspect_from = SUSPECT * scale(&answer.marker_errors);
+        let suspect_from = SUSPECT * scale(&answer.marker_errors, &mut sorted);
         let errors = answer.marker_errors.iter().enumerate();
         let suspects: Vec<usize> =
             errors.filter(|(_, e)| **e > suspect_from).map(|(i, _)| i).collect();
         if suspects.len() < 2 {
             continue;
         }
-        recorded.targets(frame, &mut targets);
-        if tracker.program.evaluate(&answer.coordinates, Mode::Open, &mut scratch.pose).is_err() {
+        recorded.positions(frame, &mut seen);
+        let pose = &mut scratch.buffers.pose;
+        if tracker.program.evaluate(&answer.coordinates, Mode::Open, pose).is_err() {
             continue;
         }
-        let off = |task: usize, target: usize| -> Option<f64> {
-            let marker = tracker.markers.get(task)?;
-            let seen = targets.get(target).copied().flatten()?;
-            let point = scratch.pose.frame(marker.segment) * marker.point;
+        let off = |marker: usize, label: usize| -> Option<f64> {
+            let point = tracker.markers.placed.get(marker)?.at(pose);
+            let seen = seen.get(label).copied().flatten()?;
             Some((point - Vec3::from(seen)).norm_squared())
         };
         for (position, &a) in suspects.iter().enumerate() {
@@ -100,15 +101,15 @@ pub fn find_exchanged(
 }
 
 /// Joins frames of one pair into runs over small holes, and drops runs too short to believe.
-fn runs(mut found: Vec<([usize; 2], usize)>) -> Vec<ExchangedTasks> {
+fn runs(mut found: Vec<([usize; 2], usize)>) -> Vec<Exchanged> {
     found.sort_unstable();
-    let mut runs: Vec<ExchangedTasks> = vec![];
-    for (tasks, frame) in found {
+    let mut runs: Vec<Exchanged> = vec![];
+    for (markers, frame) in found {
         match runs.last_mut() {
-            Some(run) if run.tasks == tasks && frame <= run.frames.end + LONGEST_HOLE => {
+            Some(run) if run.markers == markers && frame <= run.frames.end + LONGEST_HOLE => {
                 run.frames.end = frame + 1;
             }
-            _ => runs.push(ExchangedTasks { tasks, frames: frame..frame + 1 }),
+            _ => runs.push(Exchanged { markers, frames: frame..frame + 1 }),
         }
     }
     runs.retain(|run| run.frames.len() >= SHORTEST_RUN);
@@ -120,16 +121,16 @@ pub struct Corrected<'a> {
     /// The recording as it is.
     pub recorded: &'a dyn Recorded,
     /// What is exchanged in it.
-    pub exchanged: &'a [ExchangedTasks],
+    pub exchanged: &'a [Exchanged],
 }
 
 impl Recorded for Corrected<'_> {
-    fn targets(&self, frame: usize, targets: &mut Vec<Option<[f64; 3]>>) {
-        self.recorded.targets(frame, targets);
+    fn positions(&self, frame: usize, seen: &mut Vec<Option<[f64; 3]>>) {
+        self.recorded.positions(frame, seen);
         for exchange in self.exchanged.iter().filter(|e| e.frames.contains(&frame)) {
-            let [a, b] = exchange.tasks;
-            if a < targets.len() && b < targets.len() {
-                targets.swap(a, b);
+            let [a, b] = exchange.markers;
+            if a < seen.len() && b < seen.len() {
+                seen.swap(a, b);
             }
         }
     }
@@ -144,7 +145,7 @@ mod tests {
         let pair = [3, 7];
         let mut found: Vec<_> = [10, 11, 12, 15, 16, 40].map(|frame| (pair, frame)).to_vec();
         found.push(([1, 2], 12));
-        assert_eq!(runs(found), [ExchangedTasks { tasks: pair, frames: 10..17 }]);
+        assert_eq!(runs(found), [Exchanged { markers: pair, frames: 10..17 }]);
     }
 
     #[test]

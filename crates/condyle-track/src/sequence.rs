@@ -26,7 +26,7 @@ const LENGTH: usize = 64;
 const JUMP: f64 = 0.3;
 
 /// How many first guesses the first frame gets.
-const FIRST_GUESSES: usize = 4;
+pub(crate) const FIRST_GUESSES: usize = 4;
 
 /// Cuts a recording into chunks.
 pub fn cut(frames: usize) -> Vec<Chunk> {
@@ -38,19 +38,19 @@ pub fn cut(frames: usize) -> Vec<Chunk> {
 
 /// Solves the first frame of every chunk, in order.
 pub fn keys(
-    tracker: &Tracker<'_>,
+    tracker: &Tracker,
     scratch: &mut Scratch,
     recorded: &dyn Recorded,
     chunks: &[Chunk],
 ) -> Vec<FrameAnswer> {
-    let mut targets = vec![];
+    let mut seen = vec![];
     let mut keys: Vec<FrameAnswer> = vec![];
     for chunk in chunks {
         let frame = chunk.frames.start;
-        recorded.targets(frame, &mut targets);
+        recorded.positions(frame, &mut seen);
         let key = match keys.last() {
-            None => tracker.solve_first(scratch, &targets, frame, FIRST_GUESSES),
-            Some(before) => tracker.solve_frame(scratch, &targets, frame, &[&before.coordinates]),
+            None => tracker.solve_first(scratch, &seen, frame, FIRST_GUESSES),
+            Some(before) => tracker.solve_frame(scratch, &seen, frame, &before.coordinates),
         };
         keys.push(key);
     }
@@ -59,30 +59,28 @@ pub fn keys(
 
 /// Solves a run of frames forwards or backwards, each from the one before.
 fn run(
-    tracker: &Tracker<'_>,
+    tracker: &Tracker,
     scratch: &mut Scratch,
     recorded: &dyn Recorded,
     frames: impl Iterator<Item = usize>,
     start: &FrameAnswer,
 ) -> Vec<FrameAnswer> {
-    let mut targets = vec![];
-    let mut answers: Vec<FrameAnswer> = vec![];
+    let mut seen = vec![];
+    let mut answer = start.clone();
     scratch.solver.forget();
-    for frame in frames {
-        recorded.targets(frame, &mut targets);
-        let before = answers.last().unwrap_or(start);
-        let fit = before.status.is_solved().then_some(before.objective);
-        let answer = tracker.follow(scratch, &targets, frame, &before.coordinates, fit);
-        answers.push(answer);
-    }
-    answers
+    let solved = frames.map(|frame| {
+        recorded.positions(frame, &mut seen);
+        tracker.follow(scratch, &seen, frame, &mut answer, false);
+        answer.clone()
+    });
+    solved.collect()
 }
 
 /// Solves the frames of a chunk after its first, and the first frame of the next chunk.
 ///
 /// The answers begin with the key and have one more frame than the chunk, except in the last.
 pub fn solve_chunk(
-    tracker: &Tracker<'_>,
+    tracker: &Tracker,
     scratch: &mut Scratch,
     recorded: &dyn Recorded,
     chunk: &Chunk,
@@ -103,7 +101,7 @@ pub fn solve_chunk(
 /// Where two minima exist side by side, following frame by frame stays in the old one until it
 /// vanishes; the new one may have been lower for some frames already.
 fn mend_jumps(
-    tracker: &Tracker<'_>,
+    tracker: &Tracker,
     scratch: &mut Scratch,
     recorded: &dyn Recorded,
     first: usize,
@@ -118,7 +116,7 @@ fn mend_jumps(
 
 /// Solves frames again from the one after them, the last being right, until that does not help.
 fn walk_back(
-    tracker: &Tracker<'_>,
+    tracker: &Tracker,
     scratch: &mut Scratch,
     recorded: &dyn Recorded,
     first: usize,
@@ -137,7 +135,7 @@ fn walk_back(
 
 /// Joins the chunks' answers into one for each frame.
 pub fn stitch(
-    tracker: &Tracker<'_>,
+    tracker: &Tracker,
     scratch: &mut Scratch,
     recorded: &dyn Recorded,
     chunks: &[Chunk],

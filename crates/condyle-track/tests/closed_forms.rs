@@ -4,8 +4,10 @@ use condyle_math::Vec3;
 use condyle_math::function::Function;
 use condyle_model::model::{Closure, Condition};
 use condyle_model::{CoordinateId, CoordinateKind, Model, ModelBuilder, Range};
-use condyle_track::tasks::Target;
-use condyle_track::{CoordinateTask, FrameStatus, MarkerTask, Options, Scratch, Tasks, Tracker};
+use condyle_track::{
+    CoordinateTarget, FrameAnswer, FrameStatus, MarkerTarget, PostureTarget, Rules, Scratch,
+    Targets, Tracker, Wanted,
+};
 
 /// Two independent slides along x with a marker on each.
 fn slides(adjust: impl FnOnce(&mut ModelBuilder, [CoordinateId; 2])) -> Model {
@@ -23,15 +25,20 @@ fn slides(adjust: impl FnOnce(&mut ModelBuilder, [CoordinateId; 2])) -> Model {
     b.build().unwrap()
 }
 
-fn markers(weights: [f64; 2]) -> Vec<MarkerTask> {
-    weights.iter().enumerate().map(|(marker, &weight)| MarkerTask { marker, weight }).collect()
+fn markers(weights: [f64; 2]) -> Vec<MarkerTarget> {
+    weights.iter().enumerate().map(|(marker, &weight)| MarkerTarget { marker, weight }).collect()
 }
 
-fn solve(model: &Model, tasks: Tasks, targets: &[Option<f64>]) -> (Vec<f64>, f64, FrameStatus) {
-    let tracker = Tracker::new(model, tasks, Options { tolerance: 1e-12, ..Options::default() });
+fn answer(model: &Model, targets: Targets, seen: &[Option<f64>]) -> FrameAnswer {
+    let rules = Rules { tolerance: 1e-12, ..Rules::default() };
+    let tracker = Tracker::new(model.clone(), targets, rules);
     let mut scratch = Scratch::new(&tracker);
-    let targets: Vec<Option<[f64; 3]>> = targets.iter().map(|x| x.map(|x| [x, 0.0, 0.0])).collect();
-    let answer = tracker.solve_frame(&mut scratch, &targets, 0, &[]);
+    let seen: Vec<Option<[f64; 3]>> = seen.iter().map(|x| x.map(|x| [x, 0.0, 0.0])).collect();
+    tracker.solve_frame(&mut scratch, &seen, 0, &model.defaults())
+}
+
+fn solve(model: &Model, targets: Targets, seen: &[Option<f64>]) -> (Vec<f64>, f64, FrameStatus) {
+    let answer = answer(model, targets, seen);
     (answer.coordinates, answer.objective, answer.status)
 }
 
@@ -39,21 +46,21 @@ fn solve(model: &Model, tasks: Tasks, targets: &[Option<f64>]) -> (Vec<f64>, f64
 fn marker_part_is_divided_by_the_weights_seen_and_the_coordinate_part_is_not() {
     let model = slides(|_, _| {});
     let id = model.find_coordinate("a").unwrap();
-    let tasks = |weights| Tasks {
+    let wanted = |weights| Targets {
         markers: markers(weights),
-        coordinates: vec![CoordinateTask {
+        coordinates: vec![CoordinateTarget {
             coordinate: id,
             weight: 0.5,
-            target: Target::Constant(0.0),
+            wanted: Wanted::Constant(0.0),
         }],
-        closure_weight: None,
+        ..Targets::default()
     };
     // Both seen, weights 1 and 3: F = (a - 1)²/4 + ½a², least at a = ¼/(¼ + ½) = 1/3.
-    let (q, f, _) = solve(&model, tasks([1.0, 3.0]), &[Some(1.0), Some(2.0)]);
+    let (q, f, _) = solve(&model, wanted([1.0, 3.0]), &[Some(1.0), Some(2.0)]);
     assert!((q[0] - 1.0 / 3.0).abs() < 1e-9 && (q[1] - 2.0).abs() < 1e-9, "{q:?}");
     assert!((f - (4.0 / 9.0 / 4.0 + 0.5 / 9.0)).abs() < 1e-9, "{f}");
     // Only the first seen: F = (a - 1)² + ½a², least at a = 2/3; b stays at its default.
-    let (q, f, status) = solve(&model, tasks([1.0, 3.0]), &[Some(1.0), None]);
+    let (q, f, status) = solve(&model, wanted([1.0, 3.0]), &[Some(1.0), None]);
     assert!((q[0] - 2.0 / 3.0).abs() < 1e-9 && q[1].abs() < 1e-9, "{q:?}");
     assert!((f - 1.0 / 3.0).abs() < 1e-9, "{f}");
     assert_eq!(status, FrameStatus::Solved);
@@ -65,8 +72,8 @@ fn a_coordinate_stops_exactly_at_its_bound_and_passes_one_that_is_not_enforced()
         let model = slides(|b, [a, _]| {
             b.coordinate_mut(a).range = Range { lower: None, upper: Some(0.25), enforced };
         });
-        let tasks = Tasks { markers: markers([1.0, 1.0]), ..Tasks::default() };
-        let (q, ..) = solve(&model, tasks, &[Some(1.0), Some(0.5)]);
+        let wanted = Targets { markers: markers([1.0, 1.0]), ..Targets::default() };
+        let (q, ..) = solve(&model, wanted, &[Some(1.0), Some(0.5)]);
         if enforced {
             assert_eq!(q[0], expected);
         }
@@ -83,8 +90,8 @@ fn the_range_of_a_coordinate_that_follows_holds_its_leader() {
         b.follow(follower, leader);
         b.coordinate_mut(follower).range = Range::new(-0.2, 0.2);
     });
-    let tasks = Tasks { markers: markers([1.0, 0.0]), ..Tasks::default() };
-    let (q, _, status) = solve(&model, tasks, &[Some(1.0), None]);
+    let wanted = Targets { markers: markers([1.0, 0.0]), ..Targets::default() };
+    let (q, _, status) = solve(&model, wanted, &[Some(1.0), None]);
     assert_eq!(status, FrameStatus::Solved);
     assert!((q[0] - 0.05).abs() < 1e-7 && (q[1] - 0.2).abs() < 2e-7, "{q:?}");
 }
@@ -97,18 +104,18 @@ fn loops_close_exactly_or_at_a_price() {
             condition: Condition::Points { at: [0, 1].map(|i| (b.segment_at(i), Vec3::ZERO)) },
         });
     });
-    let tasks = |closure_weight| Tasks {
+    let wanted = |closure_weight| Targets {
         markers: markers([1.0, 1.0]),
-        coordinates: vec![],
         closure_weight,
+        ..Targets::default()
     };
     // Exact: both in the middle of their targets 0 and 1, F = (¼ + ¼)/2.
-    let (q, f, _) = solve(&model, tasks(None), &[Some(0.0), Some(1.0)]);
+    let (q, f, _) = solve(&model, wanted(None), &[Some(0.0), Some(1.0)]);
     assert!((q[0] - 0.5).abs() < 1e-9 && (q[0] - q[1]).abs() < 1e-9, "{q:?}");
     assert!((f - 0.25).abs() < 1e-9);
     // Weight w: with gap g, each end gives way by (1 - g)/2, so F = (1 - g)²/4 + w·g², g = 1/(1 + 4w).
     for weight in [0.25, 1.0, 10.0] {
-        let (q, ..) = solve(&model, tasks(Some(weight)), &[Some(0.0), Some(1.0)]);
+        let (q, ..) = solve(&model, wanted(Some(weight)), &[Some(0.0), Some(1.0)]);
         let gap = 1.0 / (1.0 + 4.0 * weight);
         assert!((q[1] - q[0] - gap).abs() < 1e-9, "weight {weight}: {q:?}");
     }
@@ -120,11 +127,11 @@ fn locked_coordinates_stay_and_frames_without_markers_say_so() {
         b.coordinate_mut(a).default[0] = 0.3;
         b.coordinate_mut(a).locked = true;
     });
-    let tasks = Tasks { markers: markers([1.0, 1.0]), ..Tasks::default() };
-    let (q, ..) = solve(&model, tasks.clone(), &[Some(1.0), Some(2.0)]);
+    let wanted = Targets { markers: markers([1.0, 1.0]), ..Targets::default() };
+    let (q, ..) = solve(&model, wanted.clone(), &[Some(1.0), Some(2.0)]);
     assert_eq!(q[0], 0.3);
     assert!((q[1] - 2.0).abs() < 1e-9);
-    let (_, _, status) = solve(&model, tasks, &[None, None]);
+    let (_, _, status) = solve(&model, wanted, &[None, None]);
     assert_eq!(status, FrameStatus::NoMarkers);
 }
 
@@ -138,8 +145,8 @@ fn a_quaternion_ball_turns_to_its_markers_from_any_start() {
         b.marker(&format!("m{i}"), Some(bone), point);
     }
     let model = b.build().unwrap();
-    let markers = (0..3).map(|marker| MarkerTask { marker, weight: 1.0 }).collect();
-    let tracker = Tracker::new(&model, Tasks { markers, ..Tasks::default() }, Options::default());
+    let markers = (0..3).map(|marker| MarkerTarget { marker, weight: 1.0 }).collect();
+    let tracker = Tracker::new(model, Targets { markers, ..Targets::default() }, Rules::default());
     let mut scratch = Scratch::new(&tracker);
     for turn in [Vec3::new(0.1, 0.2, 0.3), Vec3::new(0.0, 3.1, 0.0), Vec3::new(-2.0, 1.0, 1.5)] {
         let truth = condyle_math::Quat::exp(turn);
@@ -175,17 +182,65 @@ fn markers_below_a_scale_find_its_factor() {
     let hung =
         |x: f64, y: f64| [s * (1.0 + x * t.cos() - y * t.sin()), x * t.sin() + y * t.cos(), 0.0];
     let targets = [[0.5 * s, 0.2, 0.0], hung(0.3, 0.1), hung(0.0, 0.4)];
-    let tasks = Tasks {
-        markers: (0..3).map(|marker| MarkerTask { marker, weight: 1.0 }).collect(),
-        coordinates: vec![],
-        closure_weight: None,
+    let wanted = Targets {
+        markers: (0..3).map(|marker| MarkerTarget { marker, weight: 1.0 }).collect(),
+        ..Targets::default()
     };
-    let tracker = Tracker::new(&model, tasks, Options { tolerance: 1e-12, ..Options::default() });
+    let tracker = Tracker::new(model, wanted, Rules { tolerance: 1e-12, ..Rules::default() });
     let mut scratch = Scratch::new(&tracker);
     let seen: Vec<Option<[f64; 3]>> = targets.into_iter().map(Some).collect();
-    let answer = tracker.solve_frame(&mut scratch, &seen, 0, &[]);
+    let answer = tracker.solve_frame(&mut scratch, &seen, 0, &tracker.model().defaults());
     assert_eq!(answer.status, FrameStatus::Solved);
     // The tiny prior towards the defaults leaves its trace.
     assert!((answer.coordinates[0] - s).abs() < 1e-6, "{:?}", answer.coordinates);
     assert!((answer.coordinates[1] - t).abs() < 1e-6, "{:?}", answer.coordinates);
+}
+
+#[test]
+fn a_posture_gives_way_by_its_stiffness_and_is_reported_apart() {
+    let model = slides(|_, _| {});
+    let [a, b] = ["a", "b"].map(|name| model.find_coordinate(name).unwrap());
+    let rests = |terms: &[(CoordinateId, f64)], rest, stiffness| Targets {
+        markers: markers([1.0, 1.0]),
+        postures: vec![PostureTarget { terms: terms.to_vec(), rest, stiffness }],
+        ..Targets::default()
+    };
+    for k in [0.25, 1.0, 3.0] {
+        // One marker: (a - 1)² + k a² is least at a = 1/(1 + k); F is the first part, P the second.
+        let found = answer(&model, rests(&[(a, 1.0)], 0.0, k), &[Some(1.0), None]);
+        let least = 1.0 / (1.0 + k);
+        assert!((found.coordinates[0] - least).abs() < 1e-9, "{found:?}");
+        assert!((found.objective - (least - 1.0).powi(2)).abs() < 1e-9, "{found:?}");
+        assert!((found.posture - k * least * least).abs() < 1e-9, "{found:?}");
+        // Two markers at 1 and 2: ½(a - 1)² + ½(b - 2)² + k (a - 2b + 0.5)². With s = a - 2b + 0.5,
+        // a = 1 - 2ks and b = 2 + 4ks, so s = -2.5 - 10ks.
+        let found = answer(&model, rests(&[(a, 1.0), (b, -2.0)], -0.5, k), &[Some(1.0), Some(2.0)]);
+        let s = -2.5 / (1.0 + 10.0 * k);
+        let [q, r] = [found.coordinates[0], found.coordinates[1]];
+        assert!((q - (1.0 - 2.0 * k * s)).abs() < 1e-9, "{found:?}");
+        assert!((r - (2.0 + 4.0 * k * s)).abs() < 1e-9, "{found:?}");
+        assert!((found.posture - k * s * s).abs() < 1e-9, "{found:?}");
+        assert!((found.objective - 10.0 * (k * s).powi(2)).abs() < 1e-9, "{found:?}");
+    }
+    // Where no marker is seen the rest is all there is.
+    let found = answer(&model, rests(&[(b, 2.0)], 0.6, 1e-5), &[None, None]);
+    assert!((found.coordinates[1] - 0.3).abs() < 1e-6, "{found:?}");
+    assert_eq!((found.status, found.objective), (FrameStatus::NoMarkers, 0.0));
+}
+
+#[test]
+fn what_leans_less_on_its_posture_wins_where_markers_cannot_tell() {
+    // One angle, seen from the axis alone: F is nothing everywhere, and P is least at the rest.
+    let mut b = ModelBuilder::new("top");
+    let top = b.segment("top", None);
+    b.hinge("joint", top, "spin", Vec3::Y);
+    b.marker("tip", Some(top), Vec3::Y);
+    let model = b.build().unwrap();
+    let spin = model.find_coordinate("spin").unwrap();
+    let posture = PostureTarget { terms: vec![(spin, 1.0)], rest: 0.4, stiffness: 1e-5 };
+    let markers = vec![MarkerTarget { marker: 0, weight: 1.0 }];
+    let targets = Targets { markers, postures: vec![posture], ..Targets::default() };
+    let tracker = Tracker::new(model, targets, Rules::default());
+    let found = tracker.solve_first(&mut Scratch::new(&tracker), &[Some([0.0, 1.0, 0.0])], 0, 4);
+    assert!((found.coordinates[0] - 0.4).abs() < 1e-6 && found.posture < 1e-15, "{found:?}");
 }

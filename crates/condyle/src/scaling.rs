@@ -28,7 +28,7 @@ use condyle_math::Vec3;
 use condyle_model::component::Component;
 use condyle_model::{Mode, Model, Pose, SegmentId};
 use condyle_motion::Recording;
-use condyle_track::{FrameAnswer, FrameStatus, MarkerTask, Options, Scratch, Tasks, Tracker};
+use condyle_track::{FrameAnswer, FrameStatus, MarkerTarget, Rules, Scratch, Targets, Tracker};
 use std::fmt;
 
 /// Factors stay within one half and two.
@@ -345,7 +345,7 @@ struct Search<'m> {
     model: &'m Model,
     standing: &'m Standing,
     plan: &'m Plan,
-    tasks: Tasks,
+    targets: Targets,
     /// For each segment the position of its factor's logarithm.
     of_segment: Vec<usize>,
 }
@@ -353,20 +353,20 @@ struct Search<'m> {
 impl<'m> Search<'m> {
     fn new(model: &'m Model, standing: &'m Standing, plan: &'m Plan) -> Self {
         let of_segment = factors_of_segments(model);
-        let task = |&marker: &usize| MarkerTask { marker, weight: 1.0 };
-        let markers = standing.markers.iter().map(task).collect();
-        let tasks = Tasks { markers, ..Tasks::default() };
-        Self { model, standing, plan, tasks, of_segment }
+        let target = |&marker: &usize| MarkerTarget { marker, weight: 1.0 };
+        let markers = standing.markers.iter().map(target).collect();
+        let targets = Targets { markers, ..Targets::default() };
+        Self { model, standing, plan, targets, of_segment }
     }
 
     /// Weighs the markers anew; answers whether that changes anything.
     fn weigh(&mut self, answer: &FrameAnswer) -> bool {
         let bound = TRUSTED * self.plan.marker_spread;
         let mut change = 0.0f64;
-        for (task, &error) in self.tasks.markers.iter_mut().zip(&answer.marker_errors) {
+        for (target, &error) in self.targets.markers.iter_mut().zip(&answer.marker_errors) {
             let weight = if error > bound { (bound / error).powi(2) } else { 1.0 };
-            change = change.max((weight - task.weight).abs());
-            task.weight = weight;
+            change = change.max((weight - target.weight).abs());
+            target.weight = weight;
         }
         change > 1e-3
     }
@@ -387,24 +387,23 @@ impl<'m> Search<'m> {
 
     /// The posture at these factors, from one near by if there is one.
     fn at(&self, logs: &[f64], near: Option<&[f64]>) -> State {
-        let scaled = self.model_at(logs);
-        let options = Options { tolerance: 1e-12, ..Options::default() };
-        let tracker = Tracker::new(&scaled, self.tasks.clone(), options);
+        let rules = Rules { tolerance: 1e-12, ..Rules::default() };
+        let tracker = Tracker::new(self.model_at(logs), self.targets.clone(), rules);
         let mut scratch = Scratch::new(&tracker);
         let places = &self.standing.places;
         let answer = match near {
-            Some(start) => tracker.solve_frame(&mut scratch, places, 0, &[start]),
+            Some(start) => tracker.solve_frame(&mut scratch, places, 0, start),
             None => tracker.solve_first(&mut scratch, places, 0, GUESSES),
         };
         let mut pose = Pose::new(tracker.program());
         let mut residuals = vec![];
         // The buffers are of this program, so nothing can be refused.
         let _ = tracker.program().evaluate(&answer.coordinates, Mode::Open, &mut pose);
-        for (task, place) in self.tasks.markers.iter().zip(places) {
-            let marker = &scaled.markers()[task.marker];
+        for (target, place) in self.targets.markers.iter().zip(places) {
+            let marker = &tracker.model().markers()[target.marker];
             let at = marker.segment.map_or(marker.point, |id| pose.segment(id) * marker.point);
             let off = at - place.map_or(at, Vec3::from);
-            let scale = task.weight.sqrt() / self.plan.marker_spread;
+            let scale = target.weight.sqrt() / self.plan.marker_spread;
             residuals.extend(off.to_array().map(|x| x * scale));
         }
         let groups = logs[1..].iter().map(|log| (log - logs[0]) / self.plan.group_spread);

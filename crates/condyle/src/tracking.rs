@@ -8,14 +8,11 @@ use condyle_motion::{BLANK, Motion, Recording, Table};
 use condyle_track::robust::{self, Corrected};
 use condyle_track::sequence;
 use condyle_track::{
-    CoordinateTask, FrameAnswer, FrameStatus, MarkerTask, Options, Recorded, Scratch, Tasks,
-    Tracker,
+    FrameAnswer, FrameStatus, MarkerTarget, Recorded, Rules, Scratch, Targets, Tracker, Wanted,
 };
 use std::collections::HashMap;
 use std::fmt;
 use std::time::Instant;
-
-pub use condyle_track::tasks::Target;
 
 /// How a recording is tracked.
 #[derive(Clone, Debug, PartialEq)]
@@ -153,7 +150,7 @@ pub fn track(
     progress: &mut (dyn FnMut(usize, usize) + Send),
 ) -> Result<Tracking, TrackError> {
     let (matches, mut warnings) = match_markers(model, &recording.labels);
-    let mut tasks = Tasks::default();
+    let mut tasks = Targets::default();
     let mut labels = vec![];
     let mut markers = vec![];
     for found in matches {
@@ -163,7 +160,7 @@ pub fn track(
             Some(weights) => weights.get(name).copied().unwrap_or(0.0),
         };
         if weight > 0.0 {
-            tasks.markers.push(MarkerTask { marker: found.marker, weight });
+            tasks.markers.push(MarkerTarget { marker: found.marker, weight });
             labels.push(found.label);
             markers.push(name.clone());
         }
@@ -181,8 +178,8 @@ pub fn track(
     let frames = frames_in(recording, plan.time_range)?;
     add_coordinate_tasks(model, recording, plan, &frames, &mut tasks, &mut warnings);
     tasks.closure_weight = plan.closure_weight.is_finite().then_some(plan.closure_weight);
-    let options = Options { limits: plan.limits, robust: plan.robust, ..Options::default() };
-    let tracker = Tracker::new(model, tasks, options);
+    let rules = Rules { limits: plan.limits, robust: plan.robust, ..Rules::default() };
+    let tracker = Tracker::new(model.clone(), tasks, rules);
     let mut job = Job { tracker, recording, labels, frames, progress };
     let start = Instant::now();
     let (answers, swaps) = job.run(plan.threads, plan.robust);
@@ -241,7 +238,7 @@ fn add_coordinate_tasks(
     recording: &Recording,
     plan: &Plan,
     frames: &std::ops::Range<usize>,
-    tasks: &mut Tasks,
+    tasks: &mut Targets,
     warnings: &mut Vec<Diagnostic>,
 ) {
     let file = plan.coordinate_file.as_ref().map(|table| {
@@ -259,12 +256,12 @@ fn add_coordinate_tasks(
             }
         };
         let target = match (target, &file) {
-            (CoordinateTarget::Default, _) => Target::Constant(model.coordinate(id).default[0]),
-            (CoordinateTarget::Manual(value), _) => Target::Constant(*value),
+            (CoordinateTarget::Default, _) => Wanted::Constant(model.coordinate(id).default[0]),
+            (CoordinateTarget::Manual(value), _) => Wanted::Constant(*value),
             (CoordinateTarget::FromFile, Some((motion, table))) if table.column(name).is_some() => {
                 let times = recording.times[frames.clone()].iter();
                 let value = |&t| motion.at(model, t).map_or(f64::NAN, |q| model.value(&q, id));
-                Target::PerFrame(times.map(value).collect())
+                Wanted::PerFrame(times.map(value).collect())
             }
             (CoordinateTarget::FromFile, _) => {
                 let message = format!("no coordinate file gives values for `{name}`");
@@ -273,13 +270,17 @@ fn add_coordinate_tasks(
                 continue;
             }
         };
-        tasks.coordinates.push(CoordinateTask { coordinate: id, weight: *weight, target });
+        tasks.coordinates.push(condyle_track::CoordinateTarget {
+            coordinate: id,
+            weight: *weight,
+            wanted: target,
+        });
     }
 }
 
 /// One recording on its way through the tracker.
-struct Job<'a, 'm> {
-    tracker: Tracker<'m>,
+struct Job<'a> {
+    tracker: Tracker,
     recording: &'a Recording,
     labels: Vec<usize>,
     frames: std::ops::Range<usize>,
@@ -294,16 +295,16 @@ struct Ordered<'a> {
 }
 
 impl Recorded for Ordered<'_> {
-    fn targets(&self, frame: usize, targets: &mut Vec<Option<[f64; 3]>>) {
+    fn positions(&self, frame: usize, seen: &mut Vec<Option<[f64; 3]>>) {
         let row = self.recording.frame(self.first + frame);
-        targets.clear();
-        targets.extend(
+        seen.clear();
+        seen.extend(
             self.labels.iter().map(|&label| row.get(label).and_then(|seen| seen.position())),
         );
     }
 }
 
-impl Job<'_, '_> {
+impl Job<'_> {
     /// Tracks all frames; with robust options, once more with exchanged labels put right.
     fn run(&mut self, threads: Option<usize>, robust: bool) -> (Vec<FrameAnswer>, Vec<Swap>) {
         let labels = std::mem::take(&mut self.labels);
@@ -322,7 +323,7 @@ impl Job<'_, '_> {
             let name = |task: usize| self.recording.labels[labels[task]].clone();
             let first = self.frames.start;
             swaps.extend(exchanged.iter().map(|e| Swap {
-                labels: e.tasks.map(name),
+                labels: e.markers.map(name),
                 frames: first + e.frames.start..first + e.frames.end,
             }));
         }
