@@ -6,8 +6,9 @@ use condyle_model::model::{Closure, Condition};
 use condyle_model::{CoordinateId, CoordinateKind, Model, ModelBuilder, Range};
 use condyle_track::{
     CoordinateTarget, FrameAnswer, FrameStatus, MarkerTarget, PostureTarget, Rules, Scratch,
-    Targets, Tracker, Wanted,
+    Stream, Targets, Tracker, Wanted,
 };
+use std::sync::Arc;
 
 /// Two independent slides along x with a marker on each.
 fn slides(adjust: impl FnOnce(&mut ModelBuilder, [CoordinateId; 2])) -> Model {
@@ -243,4 +244,55 @@ fn what_leans_less_on_its_posture_wins_where_markers_cannot_tell() {
     let tracker = Tracker::new(model, targets, Rules::default());
     let found = tracker.solve_first(&mut Scratch::new(&tracker), &[Some([0.0, 1.0, 0.0])], 0, 4);
     assert!((found.coordinates[0] - 0.4).abs() < 1e-6 && found.posture < 1e-15, "{found:?}");
+}
+
+#[test]
+fn a_model_its_tracker_and_a_stream_move_together_and_find_back_after_a_gap() {
+    struct Laboratory {
+        model: Arc<Model>,
+        stream: Stream,
+    }
+    let mut b = ModelBuilder::new("arm");
+    let arm = b.segment("arm", None);
+    b.hinge("joint", arm, "turn", Vec3::Z);
+    let points = [Vec3::X, Vec3::Y * 0.3];
+    points.iter().for_each(|&p| b.marker(&format!("m{p:?}"), Some(arm), p));
+    let model = Arc::new(b.build().unwrap());
+    let tracker = Tracker::new(
+        Arc::clone(&model),
+        Targets { markers: markers([1.0, 1.0]), ..Targets::default() },
+        Rules::default(),
+    );
+    let mut laboratory = Laboratory { model, stream: Stream::new(tracker) };
+    let turned = std::thread::spawn(move || {
+        let seen = |turn: f64| {
+            let turn = condyle_math::Quat::exp(Vec3::Z * turn).to_mat3();
+            points.map(|p| Some((turn * p).to_array()))
+        };
+        let mut turned = vec![];
+        let mut look = |seen: &[Option<[f64; 3]>]| {
+            let answer = laboratory.stream.next(seen);
+            turned.push((answer.coordinates[0], answer.status));
+        };
+        // Nothing, then a turn; a gap in which the arm goes to the other side.
+        look(&[None, None]);
+        look(&seen(0.2));
+        (0..3).for_each(|_| look(&[None, None]));
+        look(&seen(-3.0));
+        assert!(Arc::ptr_eq(&laboratory.model, laboratory.stream.tracker().model()));
+        turned
+    })
+    .join()
+    .unwrap();
+    let lost = FrameStatus::NoMarkers;
+    let expected = [(0.0, lost), (0.2, FrameStatus::Solved), (0.2, lost), (0.2, lost), (0.2, lost)];
+    for (found, expected) in turned.iter().zip(expected) {
+        assert!((found.0 - expected.0).abs() < 1e-6 && found.1 == expected.1, "{turned:?}");
+    }
+    // From 0.2 a turn by -3 is nearer as 2π - 3.
+    let (back, status) = turned[5];
+    assert!(
+        (back - (std::f64::consts::TAU - 3.0)).abs() < 1e-6 && status.is_solved(),
+        "{turned:?}"
+    );
 }
