@@ -3,6 +3,7 @@
 //! | type | what |
 //! | --- | --- |
 //! | [`Recording`] | marker positions, frame by frame |
+//! | [`Orientations`] | orientations of inertial sensors, frame by frame |
 //! | [`Table`] | columns of numbers by name, as a file has them: a motion of no stated model |
 //! | [`Motion`] | the coordinates of one model, frame by frame |
 //! | [`Posture`] | the coordinates of one model in one moment, set and read by coordinate |
@@ -14,6 +15,7 @@ pub mod columns;
 pub mod difference;
 mod length_unit;
 mod motion;
+mod orientations;
 mod posture;
 mod recording;
 mod sample;
@@ -22,6 +24,7 @@ mod virtual_markers;
 
 pub use length_unit::LengthUnit;
 pub use motion::{BLANK, Motion};
+pub use orientations::Orientations;
 pub use posture::Posture;
 pub use recording::{Gap, Observed, Recording};
 pub use sample::{Between, between};

@@ -177,7 +177,7 @@ impl Tracker {
                 let summary = solver.minimise(&mut frame, &stopping);
                 spent += summary.iterations;
                 answer.status = match summary.stop {
-                    _ if !some_seen => FrameStatus::NoMarkers,
+                    _ if !some_seen && !self.targets.orient(index) => FrameStatus::NoMarkers,
                     Stop::Converged => FrameStatus::Solved,
                     Stop::Infeasible => FrameStatus::Infeasible,
                     Stop::Stalled | Stop::IterationLimit | Stop::NotFinite => {

@@ -60,5 +60,7 @@ pub use answer::{FrameAnswer, FrameStatus};
 pub use recorded::Recorded;
 pub use sequence::{Chunk, cut, stitch};
 pub use stream::Stream;
-pub use target::{CoordinateTarget, MarkerTarget, PRIOR, PostureTarget, Targets, Wanted};
+pub use target::{
+    CoordinateTarget, MarkerTarget, OrientationTarget, PRIOR, PostureTarget, Targets, Wanted,
+};
 pub use tracker::{Rules, Scratch, Tracker};

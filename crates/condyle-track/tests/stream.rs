@@ -90,6 +90,7 @@ fn a_stream_equals_its_frames_one_by_one_and_allocates_nothing() {
                 weight: 1e-4,
                 wanted: Wanted::PerFrame((0..60).map(|i| 0.01 * f64::from(i)).collect()),
             }],
+            orientations: vec![],
             postures: vec![PostureTarget {
                 terms: vec![(angle(3), 1.0), (angle(5), -1.0)],
                 rest: 0.2,

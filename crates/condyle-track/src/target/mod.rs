@@ -3,7 +3,7 @@
 //! With the unknowns x (the directions of the independent coordinates, n of them), a frame minimises
 //!
 //! ```text
-//! F(x) + P(x) + prior(x),   F = (Σₘ wₘ |eₘ|²) / (Σₘ wₘ) + Σ_c w_c (q_c - t_c)² + w Σ_r c_r²
+//! F(x) + P(x) + prior(x),   F = (Σₘ wₘ |eₘ|²) / (Σₘ wₘ) + Σ_c w_c (q_c - t_c)² + Σ_o w_o |ρ_o|² + w Σ_r c_r²
 //!                           P = Σ_p k_p (Σᵢ a_pᵢ qᵢ - r_p)²
 //! ```
 //!
@@ -26,6 +26,7 @@ mod closure;
 mod coordinate;
 mod marker;
 mod moments;
+mod orientation;
 mod posture;
 mod prior;
 #[cfg(test)]
@@ -35,6 +36,7 @@ pub use coordinate::{CoordinateTarget, Wanted};
 pub use marker::MarkerTarget;
 pub(crate) use marker::Markers;
 pub(crate) use moments::Moments;
+pub use orientation::OrientationTarget;
 pub use posture::PostureTarget;
 pub use prior::PRIOR;
 
@@ -50,6 +52,8 @@ pub struct Targets {
     pub markers: Vec<MarkerTarget>,
     /// Coordinates that should have a value.
     pub coordinates: Vec<CoordinateTarget>,
+    /// Segments that should have an orientation.
+    pub orientations: Vec<OrientationTarget>,
     /// Rest values with their stiffness.
     pub postures: Vec<PostureTarget>,
     /// Weight of squared loop errors; infinite (or `None`) closes loops exactly.
@@ -78,11 +82,12 @@ enum Part {
 }
 
 /// The kinds, in the order in which they are summed.
-fn kinds(tracker: &Tracker) -> [(Part, &dyn Target); 5] {
+fn kinds(tracker: &Tracker) -> [(Part, &dyn Target); 6] {
     let targets = &tracker.targets;
     [
         (Part::Mean, &tracker.markers),
         (Part::Fit, &targets.coordinates),
+        (Part::Fit, &targets.orientations),
         (Part::Posture, &targets.postures),
         (Part::Unreported, &prior::Prior),
         (Part::Fit, &closure::Closures),
@@ -143,6 +148,7 @@ impl Targets {
             }
         }
         self.coordinates.retain(|t| positive(t.weight) && number(t.coordinate));
+        self.orientations.retain(|t| positive(t.weight));
         self.postures.retain(|t| {
             let known = t.terms.iter().all(|&(id, factor)| factor.is_finite() && number(id));
             positive(t.stiffness) && t.rest.is_finite() && known
@@ -151,7 +157,12 @@ impl Targets {
 
     /// Whether something but markers says where the model should be.
     pub(crate) fn stand_without_markers(&self) -> bool {
-        !(self.coordinates.is_empty() && self.postures.is_empty())
+        !(self.coordinates.is_empty() && self.orientations.is_empty() && self.postures.is_empty())
+    }
+
+    /// Whether a segment should have an orientation in a frame.
+    pub(crate) fn orient(&self, frame: usize) -> bool {
+        self.orientations.iter().any(|t| matches!(t.wanted.get(frame), Some(Some(_))))
     }
 
     /// Whether loops are closed by rows that must vanish.

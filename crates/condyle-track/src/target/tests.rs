@@ -3,8 +3,8 @@
 
 use super::*;
 use crate::{Rules, Scratch};
-use condyle_math::Vec3;
 use condyle_math::function::Function;
+use condyle_math::{Quat, Vec3};
 use condyle_model::component::{Along, Scale};
 use condyle_model::model::{Closure, Condition};
 use condyle_model::{Component, Mode, ModelBuilder, Pose, Program, SegmentId};
@@ -85,7 +85,14 @@ fn at_rest(seed: u64) -> (Tracker, Vec<f64>, Vec<Option<[f64; 3]>>) {
         weight: 0.5 + dice.next().abs(),
         wanted: Wanted::Constant(value(&id)),
     };
+    let oriented = |id| OrientationTarget {
+        segment: id,
+        weight: 0.7,
+        wanted: vec![Some(Quat::from_mat3(pose.segment(id).linear))],
+    };
+    let rigid = model.segment_ids().filter(|&id| !program.deforms(id));
     let targets = Targets {
+        orientations: rigid.map(oriented).collect(),
         coordinates: ids.iter().copied().map(wanted).collect(),
         markers: (0..18).map(|i| MarkerTarget { marker: i, weight: 1.0 + i as f64 }).collect(),
         postures: vec![PostureTarget { terms, rest: sum, stiffness: 0.3 }],
