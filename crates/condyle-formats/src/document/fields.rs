@@ -172,7 +172,7 @@ impl Reader<'_> {
             Ok(numbers) => Some(numbers),
             Err(_) => {
                 let message = format!("`{label}` has {count} numbers");
-                self.texts.error(node.spot, "document/length", message, format!("give {N}"));
+                self.length(node.spot, message, format!("give {N}"));
                 None
             }
         }
@@ -180,6 +180,17 @@ impl Reader<'_> {
 
     pub(super) fn vector(&mut self, node: &Node, label: &str) -> Option<Vec3> {
         self.some::<3>(node, label).map(Vec3::from)
+    }
+
+    /// A number with a default.
+    pub(super) fn number_or(&mut self, fields: &Fields<'_>, key: &str, or: f64) -> Option<f64> {
+        fields.get(key).map_or(Some(or), |node| self.number(node, key))
+    }
+
+    /// A list of vectors, each of which is `None` after an error.
+    pub(super) fn vectors(&mut self, node: &Node, label: &str) -> Option<Vec<Option<Vec3>>> {
+        let list = self.list(node, label)?;
+        Some(list.iter().map(|node| self.vector(node, label)).collect())
     }
 
     /// A list of pairs: the knots of a curve.
@@ -217,13 +228,13 @@ impl Reader<'_> {
             if fields.get(turn).is_some() {
                 self.exclusive(node, turn, matrix);
             }
-            let rows = self.list(node, matrix).unwrap_or_default();
-            let rows: Vec<Vec3> = rows.iter().filter_map(|n| self.vector(n, matrix)).collect();
+            let rows: Vec<Vec3> =
+                self.vectors(node, matrix).into_iter().flatten().flatten().collect();
             match rows[..] {
                 [x, y, z] => linear = Mat3::from_columns(x, y, z).transpose(),
                 _ => {
                     let message = format!("`{matrix}` has {} rows", rows.len());
-                    self.texts.error(node.spot, "document/length", message, "give 3 rows of 3");
+                    self.length(node.spot, message, "give 3 rows of 3");
                 }
             }
         }

@@ -25,10 +25,7 @@ impl Reader<'_> {
             return self.number(node, label).map(Function::constant);
         }
         let fields = self.table(node, node.spot, label.to_owned(), FUNCTION);
-        let factor = match fields.get("factor") {
-            Some(n) => self.number(n, "factor")?,
-            None => 1.0,
-        };
+        let factor = self.number_or(&fields, "factor", 1.0)?;
         let mut curves = fields
             .entries()
             .iter()
@@ -95,10 +92,7 @@ impl Reader<'_> {
         let fields = self.table(node, node.spot, label.to_owned(), SEVERAL);
         if let Some(slopes) = fields.get("slopes") {
             let slopes = self.numbers(slopes, "slopes")?;
-            let intercept = match fields.get("intercept") {
-                Some(n) => self.number(n, "intercept")?,
-                None => 0.0,
-            };
+            let intercept = self.number_or(&fields, "intercept", 0.0)?;
             return Some(FunctionOfSeveral::Linear { slopes, intercept });
         }
         let (Some(dimension), Some(order), Some(given)) =

@@ -43,6 +43,14 @@ pub(super) struct CoordinateDraft {
     pub(super) follows: Option<Name>,
 }
 
+impl CoordinateDraft {
+    /// A free coordinate at its neutral value.
+    pub(super) fn new(set: &str, name: Name, kind: CoordinateKind) -> Self {
+        let (set, default, range) = (set.to_owned(), kind.neutral(), Range::FREE);
+        Self { set, name, kind, default, range, locked: false, source: None, follows: None }
+    }
+}
+
 #[derive(Clone)]
 pub(super) struct ComponentDraft {
     pub(super) set: String,

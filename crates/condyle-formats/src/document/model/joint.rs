@@ -11,8 +11,8 @@ use crate::document::tree::{Entry, Value};
 use condyle_diagnostics::did_you_mean;
 use condyle_math::function::Function;
 use condyle_math::{EulerOrder, Vec3};
+use condyle_model::CoordinateKind;
 use condyle_model::component::Along;
-use condyle_model::{CoordinateKind, Range};
 use std::collections::HashSet;
 
 /// The coordinates and components of a plain joint.
@@ -142,16 +142,7 @@ impl ModelReader<'_> {
         }
         let here = |text: String| Name { text, spot: set.spot };
         for (name, kind) in &expansion.coordinates {
-            let start = CoordinateDraft {
-                set: set.text.clone(),
-                name: here(name.clone()),
-                kind: *kind,
-                default: kind.neutral(),
-                range: Range::FREE,
-                locked: false,
-                source: None,
-                follows: None,
-            };
+            let start = CoordinateDraft::new(&set.text, here(name.clone()), *kind);
             let coordinate = match given.iter().find(|e| e.key.text == *name) {
                 Some(entry) => self.coordinate(&label, entry, start, false),
                 None => start,
@@ -285,8 +276,7 @@ impl ModelReader<'_> {
 
     fn up_to_three(&mut self, fields: &Fields<'_>) -> Option<Vec<Vec3>> {
         let node = fields.get("axes")?;
-        let list = self.list(node, "axes")?;
-        let axes: Vec<_> = list.iter().filter_map(|n| self.vector(n, "axes")).collect();
+        let axes: Vec<Vec3> = self.vectors(node, "axes")?.into_iter().flatten().collect();
         if axes.is_empty() || axes.len() > 3 {
             let message = format!("`axes` has {} directions", axes.len());
             self.length(node.spot, message, "give one to three");
@@ -306,8 +296,7 @@ impl ModelReader<'_> {
         if N == 1 {
             return [self.vector(node, key).unwrap_or(Vec3::Z); N];
         }
-        let list = self.list(node, key).unwrap_or_default();
-        let axes: Vec<Option<Vec3>> = list.iter().map(|n| self.vector(n, key)).collect();
+        let axes = self.vectors(node, key).unwrap_or_default();
         if axes.len() != N && matches!(node.value, Value::List(_)) {
             let message = format!("`axes` has {} directions", axes.len());
             self.length(node.spot, message, format!("give {N}"));

@@ -17,8 +17,8 @@
 
 use super::blueprint::{Blueprint, Held};
 use super::draft::{
-    ClosureDraft, ComponentDraft, ConditionDraft, CoordinateDraft, Draft, Holder, OutputDraft,
-    SegmentDraft,
+    ClosureDraft, ComponentDraft, ConditionDraft, CoordinateDraft, Draft, Holder, MarkerDraft,
+    OutputDraft, SegmentDraft,
 };
 use crate::document::texts::{Name, Texts};
 use condyle_math::function::{Function, SimmSpline};
@@ -51,24 +51,21 @@ impl Mirror {
             self.other(name).is_some_and(|other| !known.contains(&other))
         };
 
-        let made: Vec<SegmentDraft> = draft
-            .segments
-            .iter()
-            .filter(|s| news(&segments, &s.name.text))
-            .map(|s| SegmentDraft {
+        let new_set = |set: &str| news(&sets, set);
+        add(
+            &mut draft.segments,
+            |s| news(&segments, &s.name.text),
+            |s| SegmentDraft {
                 name: self.renamed(&s.name),
                 parent: s.parent.as_ref().map(|p| self.renamed(p)),
                 in_parent: self.frame(s.in_parent),
                 in_itself: self.frame(s.in_itself),
-            })
-            .collect();
-        draft.segments.extend(made);
-
-        let made: Vec<CoordinateDraft> = draft
-            .coordinates
-            .iter()
-            .filter(|c| news(&sets, &c.set))
-            .map(|c| {
+            },
+        );
+        add(
+            &mut draft.coordinates,
+            |c| new_set(&c.set),
+            |c| {
                 let mut default = c.default;
                 if c.kind == CoordinateKind::Orientation {
                     let [x, y, z, w] = c.default;
@@ -82,66 +79,47 @@ impl Mirror {
                     follows: c.follows.as_ref().map(|p| self.port(p)),
                     ..c.clone()
                 }
-            })
-            .collect();
-        draft.coordinates.extend(made);
-
+            },
+        );
         let mut made = vec![];
-        for component in draft.components.iter().filter(|c| news(&sets, &c.set)) {
+        for component in draft.components.iter().filter(|c| new_set(&c.set)) {
             if self.component(component, texts, &mut made).is_none() {
                 let name = self.name(&component.name.text);
                 draft.broken.insert((self.name(&component.set), name));
             }
         }
         draft.components.extend(made);
-
-        let made: Vec<(String, String)> = draft
-            .broken
-            .iter()
-            .filter(|(set, _)| news(&sets, set))
-            .map(|(set, name)| (self.name(set), self.name(name)))
-            .collect();
-        draft.broken.extend(made);
-
-        let made: Vec<OutputDraft> = draft
-            .outputs
-            .iter()
-            .filter(|o| news(&sets, &o.set))
-            .map(|o| OutputDraft {
+        let broken = draft.broken.iter().filter(|(set, _)| new_set(set));
+        let broken: Vec<_> = broken.map(|(set, name)| (self.name(set), self.name(name))).collect();
+        draft.broken.extend(broken);
+        add(
+            &mut draft.outputs,
+            |o| new_set(&o.set),
+            |o| OutputDraft {
                 set: self.name(&o.set),
                 segment: self.renamed(&o.segment),
                 ports: o.ports.iter().map(|p| self.port(p)).collect(),
                 listed: o.listed,
-            })
-            .collect();
-        draft.outputs.extend(made);
-
-        let made: Vec<Name> =
-            draft.sets.iter().filter(|s| news(&sets, &s.text)).map(|s| self.renamed(s)).collect();
-        draft.sets.extend(made);
-
-        let made: Vec<_> = draft
-            .markers
-            .iter()
-            .filter(|m| news(&markers, &m.name.text))
-            .map(|m| super::draft::MarkerDraft {
+            },
+        );
+        add(&mut draft.sets, |s| new_set(&s.text), |s| self.renamed(s));
+        add(
+            &mut draft.markers,
+            |m| news(&markers, &m.name.text),
+            |m| MarkerDraft {
                 name: self.renamed(&m.name),
                 segment: self.holder(&m.segment),
                 point: self.point(m.point),
-            })
-            .collect();
-        draft.markers.extend(made);
-
-        let made: Vec<_> = draft
-            .closures
-            .iter()
-            .filter(|c| news(&closures, &c.name.text))
-            .map(|c| ClosureDraft {
+            },
+        );
+        add(
+            &mut draft.closures,
+            |c| news(&closures, &c.name.text),
+            |c| ClosureDraft {
                 name: self.renamed(&c.name),
                 condition: self.condition(&c.condition),
-            })
-            .collect();
-        draft.closures.extend(made);
+            },
+        );
     }
 
     fn other(&self, name: &str) -> Option<String> {
@@ -381,6 +359,12 @@ impl Mirror {
         made.push(ComponentDraft { set, name, blueprint, ports });
         Some(())
     }
+}
+
+/// Adds what `mirrored` makes of each element that is `new` on the other side.
+fn add<T>(list: &mut Vec<T>, new: impl Fn(&T) -> bool, mirrored: impl Fn(&T) -> T) {
+    let made: Vec<T> = list.iter().filter(|one| new(one)).map(mirrored).collect();
+    list.extend(made);
 }
 
 /// A name as written at a port, where dots separate names.

@@ -169,10 +169,7 @@ impl ModelReader<'_> {
         };
         let segment = self.text(segment, "segment");
         let ancestors = self.names(ancestors, "ancestors").0;
-        let weight = match fields.get("weight") {
-            Some(node) => self.number(node, "weight")?,
-            None => 1.0,
-        };
+        let weight = self.number_or(fields, "weight", 1.0)?;
         Some(Blueprint::Compensate { segment: segment?, ancestors, weight })
     }
 

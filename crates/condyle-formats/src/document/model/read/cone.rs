@@ -20,10 +20,7 @@ impl ModelReader<'_> {
             "rest",
             "the bone's long axis at rest, such as [0, -1, 0]",
         );
-        let twist = match fields.get("twist") {
-            Some(node) => self.twist(node).map(Some),
-            None => Some(None),
-        };
+        let twist = self.twist(fields);
         let points = self.cone_points(fields);
         let subdivisions = match fields.get("subdivisions") {
             Some(node) => self.count(node, "subdivisions").map(|n| n as u32),
@@ -64,8 +61,7 @@ impl ModelReader<'_> {
         }
         let axes = match (fields.get("axes"), fields.get("order")) {
             (Some(node), None) => {
-                let list = self.list(node, "axes")?;
-                let axes: Vec<Option<Vec3>> = list.iter().map(|n| self.vector(n, "axes")).collect();
+                let axes = self.vectors(node, "axes")?;
                 (node.spot, axes.into_iter().collect::<Option<Vec<Vec3>>>()?)
             }
             (None, Some(node)) => (node.spot, self.letters(node, count)?),
@@ -122,18 +118,16 @@ impl ModelReader<'_> {
                 let fields = self.table(node, node.spot, label, keys::CONE_POINT);
                 let wanted = "a direction at the limit, such as [1, -1, 0]";
                 let direction = self.required_vector(&fields, "direction", wanted);
-                let twist = match fields.get("twist") {
-                    Some(node) => self.twist(node).map(Some),
-                    None => Some(None),
-                };
+                let twist = self.twist(&fields);
                 Some(ConePoint { direction: direction?, twist: twist? })
             })
             .collect();
         points.into_iter().collect()
     }
 
-    /// The lower and upper limit of twist.
-    fn twist(&mut self, node: &Node) -> Option<[f64; 2]> {
+    /// The lower and upper limit of twist, if there are any; `None` after an error.
+    fn twist(&mut self, fields: &Fields<'_>) -> Option<Option<[f64; 2]>> {
+        let Some(node) = fields.get("twist") else { return Some(None) };
         let unit = self.angle_unit(node.spot);
         let [low, high] = self.some::<2>(node, "twist")?;
         if low > high {
@@ -141,7 +135,7 @@ impl ModelReader<'_> {
             self.texts.error(node.spot, "model/crossing-range", message, "exchange the two");
             return None;
         }
-        Some([unit * low, unit * high])
+        Some(Some([unit * low, unit * high]))
     }
 }
 

@@ -15,7 +15,7 @@ use crate::document::model::keys;
 use crate::document::model::mirror::Mirror;
 use crate::document::tree::{Entry, Node};
 use condyle_model::component::Registry;
-use condyle_model::{CoordinateKind, Range, UpAxis};
+use condyle_model::{CoordinateKind, UpAxis};
 use std::ops::{Deref, DerefMut};
 
 const FRAME: [&str; 4] = ["at", "turn", "order", "matrix"];
@@ -44,8 +44,8 @@ impl DerefMut for ModelReader<'_> {
 impl ModelReader<'_> {
     /// Reads all tables of a model.
     pub(super) fn draft(&mut self, top: &Fields<'_>) -> Draft {
-        let mut draft = Draft::default();
-        draft.name = top.get("name").and_then(|n| self.text(n, "name")).map(|n| n.text);
+        let name = top.get("name").and_then(|n| self.text(n, "name")).map(|n| n.text);
+        let mut draft = Draft { name, ..Draft::default() };
         match top.get("up").and_then(|n| self.text(n, "up")) {
             Some(up) if up.text == "z" => draft.up = UpAxis::Z,
             Some(up) if up.text != "y" => {
@@ -116,16 +116,8 @@ impl ModelReader<'_> {
         draft.sets.push(set.clone());
         if let Some(node) = fields.get("coordinate") {
             for entry in self.entries(node, "coordinate") {
-                let start = CoordinateDraft {
-                    set: set.text.clone(),
-                    name: entry.key.clone(),
-                    kind: CoordinateKind::Rotation,
-                    default: CoordinateKind::Rotation.neutral(),
-                    range: Range::FREE,
-                    locked: false,
-                    source: None,
-                    follows: None,
-                };
+                let kind = CoordinateKind::Rotation;
+                let start = CoordinateDraft::new(&set.text, entry.key.clone(), kind);
                 let coordinate = self.coordinate(&label, entry, start, true);
                 draft.coordinates.push(coordinate);
             }
