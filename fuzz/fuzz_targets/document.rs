@@ -1,8 +1,8 @@
-//! Any text as a model document: no panic, errors that can be shown, and a model that is the same
-//! after it was written.
+//! Any text as a document: no panic; a kind that does not contradict the reader; as a model, errors
+//! that can be shown, and the same model after writing and reading again.
 #![no_main]
 
-use condyle_formats::document::{read_with, render, write};
+use condyle_formats::document::{Kind, kind, read_with, render, write};
 use condyle_math::{Affine, Mat3, Scalar, Vec3};
 use condyle_model::component::{Law, Registry};
 use condyle_model::{Mode, Pose, Program};
@@ -26,15 +26,19 @@ fuzz_target!(|data: &[u8]| {
         let lift = parameters.get("lift").and_then(|v| v.first()).ok_or("it needs a `lift`")?;
         Ok(Cam(*lift))
     });
+    let found = kind(data);
     let text = String::from_utf8_lossy(data);
-    // What is included is the text itself under other names, and nothing after a few.
+    // The text includes itself under other names, at most three times.
     let mut left = 3;
     let mut include = |name: &str| {
         left -= 1;
         if left < 0 || name.len() > 20 { Err("nothing there".to_owned()) } else { Ok(text.to_string()) }
     };
     let model = match read_with(&text, &mut include, &registry) {
-        Ok(read) => read.value.model,
+        Ok(read) => {
+            assert!(found == Some(Kind::Model) || data.len() >= 1 << 16);
+            read.value.model
+        }
         Err(errors) => {
             assert!(!errors.is_empty());
             assert!(render("text", &text, &errors).lines().count() >= errors.len());

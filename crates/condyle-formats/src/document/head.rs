@@ -74,8 +74,9 @@ pub fn kind(text: impl AsRef<[u8]>) -> Option<Kind> {
     }
     let (table, _) = DeTable::parse_recoverable(head);
     let table = table.get_ref();
-    match (table.get("condyle")?.get_ref(), table.get("kind")?.get_ref()) {
-        (DeValue::Integer(_), DeValue::String(name)) => Kind::named(name),
+    table.get("condyle")?;
+    match table.get("kind")?.get_ref() {
+        DeValue::String(name) => Kind::named(name),
         _ => None,
     }
 }

@@ -204,6 +204,9 @@ proptest! {
     #[test]
     fn any_text_is_read_without_a_panic(body in "([a-z\\[\\]{}=.,\"'#\n \
     $0-9-]|segment|joint_set|at = ){0,80}") {
-        let _ = try_read(&format!("{HEAD}{body}"));
+        let text = format!("{HEAD}{body}");
+        if try_read(&text).is_ok() {
+            prop_assert_eq!(document::kind(&text), Some(document::Kind::Model));
+        }
     }
 }
