@@ -17,8 +17,8 @@
 //! for what only that kind can get wrong. No input makes it panic, and nothing recurses deeper than
 //! a fixed bound.
 //!
-//! A new kind needs a [`Kind`], a folder beside [`model`] with its [`Form`], and a function that
-//! reads its fields with the [`Reader`] from [`read_kind`].
+//! A new kind needs a [`Kind`], a folder beside [`model`] with its `Form`, and a function that
+//! reads its fields with the `Reader` from `read_kind`.
 
 mod fields;
 mod function;
