@@ -158,7 +158,13 @@ pub const FORMATS: &[Format] = &[
         reads: &[Kind::Model, Kind::Setup],
         writes: &[],
         sniff: |bytes| starts(bytes, 4096).contains("<OpenSimDocument"),
-        read: |bytes, _| opensim::read(bytes),
+        read: |bytes, _| {
+            Ok(opensim::read(bytes)?.map(|holding| match holding {
+                opensim::Holding::Model(model) => Content::Model(model),
+                opensim::Holding::Setup(setup) => Content::Setup(setup),
+                opensim::Holding::Tasks(tasks) => Content::Tasks(tasks),
+            }))
+        },
     },
     Format {
         id: Id::Trc,

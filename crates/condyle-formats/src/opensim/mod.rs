@@ -3,26 +3,37 @@
 pub mod model;
 pub mod setup;
 
-use crate::format::Content;
 use crate::xml::XmlDocument;
 use condyle_diagnostics::{Error, Read};
+use condyle_model::Model;
+
+/// What a file of OpenSim holds.
+#[derive(Clone, Debug)]
+pub enum Holding {
+    /// A model.
+    Model(Model),
+    /// A setup of inverse kinematics.
+    Setup(setup::IkSetup),
+    /// The tasks of one.
+    Tasks(setup::IkTaskSet),
+}
 
 /// Reads a file of OpenSim by what its elements say it is: a model, a setup of inverse kinematics, or
 /// the tasks of one.
 ///
 /// # Errors
 /// What is wrong, with its place; `osim/unknown` if it is none of these.
-pub fn read(bytes: &[u8]) -> Result<Read<Content>, Error> {
+pub fn read(bytes: &[u8]) -> Result<Read<Holding>, Error> {
     let document = XmlDocument::from_bytes(bytes)?;
     let root = document.value.root();
     if model::of(root).is_some() {
-        return Ok(model::from_document(document)?.map(Content::Model));
+        return Ok(model::from_document(document)?.map(Holding::Model));
     }
     if setup::tool_of(root).is_some() {
-        return Ok(setup::from_document(document)?.map(Content::Setup));
+        return Ok(setup::from_document(document)?.map(Holding::Setup));
     }
     if setup::tasks_of(root).is_some() {
-        return Ok(setup::tasks_from_document(document)?.map(Content::Tasks));
+        return Ok(setup::tasks_from_document(document)?.map(Holding::Tasks));
     }
     let message = "the file holds no <Model>, no <InverseKinematicsTool> and no <IKTaskSet>";
     let found = root.children().next().unwrap_or(root);
