@@ -26,7 +26,7 @@
 //! # From markers to coordinates
 //!
 //! ```
-//! use condyle::tracking::{Plan, track};
+//! use condyle::tracking::{Request, track};
 //! # use condyle::{LengthUnit, ModelBuilder, Recording, math::Vec3};
 //! # let mut b = ModelBuilder::new("leg");
 //! # let shank = b.segment("shank", None);
@@ -41,7 +41,7 @@
 //!     positions: vec![[-0.20, -0.35, 0.0].into()],
 //!     units: LengthUnit::Metre,
 //! };
-//! let tracking = track(&model, &recording, &Plan::default(), &mut |_, _| {}).unwrap();
+//! let tracking = track(&model, &recording, &Request::default(), &mut |_, _| {}).unwrap();
 //! let flexion = tracking.motion.frames[0][0];
 //! assert!((flexion - f64::atan2(0.20, 0.35)).abs() < 1e-5);
 //! ```
