@@ -8,10 +8,11 @@
 mod files;
 
 use condyle::formats::{LengthUnit, Recording};
-use condyle::tracking::{Plan, track};
+use condyle::tracking::{Job, Request};
 use condyle_benches::{arguments, clock, full_body, table, walk};
 use condyle_model::{Jacobian, Model, Pose, Program};
 use std::hint::black_box;
+use std::time::Instant;
 
 fn main() {
     let (name, model, recording) = match (arguments::path("--model"), arguments::path("--trial")) {
@@ -60,14 +61,17 @@ fn synthetic(model: &Model, frames: usize) -> Recording {
 
 fn measure(name: String, model: &Model, recording: &Recording) -> Vec<String> {
     let asked = arguments::path("--setup").map(|path| files::setup(&path));
-    let plan = asked.map_or_else(Plan::default, |setup| Plan::from_setup(&setup));
-    let plan = Plan { threads: Some(1), ..plan };
-    let solve = || {
-        track(model, recording, &plan, &mut |_, _| {})
-            .unwrap_or_else(|error| files::quit(&error.to_string()))
+    let request = asked.map_or_else(Request::default, |setup| Request::from_setup(&setup));
+    let request = Request { threads: Some(1), ..request };
+    let job = Job::new(model.clone(), recording, &request)
+        .unwrap_or_else(|error| files::quit(&error.to_string()));
+    let solve = |_| {
+        let start = Instant::now();
+        let tracking = job.run(&mut |_, _| {});
+        (start.elapsed().as_secs_f64(), tracking)
     };
-    let tracking = (0..5).map(|_| solve()).min_by(|a, b| a.seconds.total_cmp(&b.seconds));
-    let Some(tracking) = tracking else { return vec![] };
+    let least = (0..5).map(solve).min_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((seconds, tracking)) = least else { return vec![] };
     let summary = tracking.summary();
     let iterations = tracking.answers.iter().map(|a| f64::from(a.iterations)).sum::<f64>()
         / summary.frames as f64;
@@ -79,13 +83,13 @@ fn measure(name: String, model: &Model, recording: &Recording) -> Vec<String> {
         let evaluated = program.evaluate_with_jacobian(stored, &mut pose, &mut jacobian);
         assert!(black_box(evaluated).is_ok());
     });
-    let microseconds = 1e6 * summary.seconds / summary.frames as f64;
+    let microseconds = 1e6 * seconds / summary.frames as f64;
     let bound = 1e-3 * once * (iterations + 1.0);
     vec![
         name,
         summary.frames.to_string(),
         summary.markers_used.to_string(),
-        format!("{:.0}", summary.frames_per_second),
+        format!("{:.0}", summary.frames as f64 / seconds),
         format!("{microseconds:.1}"),
         format!("{iterations:.2}"),
         format!("{bound:.1}"),

@@ -44,12 +44,6 @@ impl From<Error> for Failure {
     }
 }
 
-impl From<condyle::tracking::TrackError> for Failure {
-    fn from(error: condyle::tracking::TrackError) -> Self {
-        Self(error.to_string())
-    }
-}
-
 /// Prints warnings about a file and returns its value.
 pub(crate) fn warned<T>(path: &Path, read: Read<T>) -> T {
     warn_about(path, &read.warnings);

@@ -2,7 +2,7 @@
 
 use condyle::Observed;
 use condyle::formats::Recording;
-use condyle::tracking::{Plan, Swap, Tracking, track};
+use condyle::tracking::{Request, Swap, Tracking, track};
 use condyle::{CoordinateKind, Model, Motion};
 
 #[path = "../src/commands/demo/figure.rs"]
@@ -10,8 +10,8 @@ mod figure;
 
 use figure::{Flaws, record, walk, walker};
 
-fn run(model: &Model, recording: &Recording, plan: &Plan) -> Tracking {
-    track(model, recording, plan, &mut |_, _| {}).unwrap()
+fn run(model: &Model, recording: &Recording, request: &Request) -> Tracking {
+    track(model, recording, request, &mut |_, _| {}).unwrap()
 }
 
 /// Root mean square and largest difference of all rotations, in degrees.
@@ -36,7 +36,7 @@ fn a_clean_recording_gives_the_motion_back() {
     let model = walker();
     let truth = walk(&model, 150, 100.0);
     let flaws = Flaws { noise: 0.0, missing: 0.0, swap: None, seed: 3 };
-    let tracking = run(&model, &record(&model, &truth, &flaws), &Plan::default());
+    let tracking = run(&model, &record(&model, &truth, &flaws), &Request::default());
     let (rms, max) = angle_errors(&model, &tracking.motion, &truth);
     // Left to the tolerance: a relative decrease of 1e-6 of nothing much.
     assert!(rms < 1e-3 && max < 0.02, "{rms} {max}");
@@ -50,7 +50,7 @@ fn noise_is_averaged_and_gaps_are_bridged() {
     let flaws = Flaws { noise: 0.002, missing: 0.05, swap: None, seed: 5 };
     let recording = record(&model, &truth, &flaws);
     assert!(recording.missing() > 300, "the recording has gaps");
-    let tracking = run(&model, &recording, &Plan::default());
+    let tracking = run(&model, &recording, &Request::default());
     let (rms, max) = angle_errors(&model, &tracking.motion, &truth);
     // Markers 5 to 15 cm from their axes, 2 mm of noise on two to four of them a joint: 0.5 to 1.5
     // degrees. Where a gap leaves a foot one marker its angles are far off for a moment, so the
@@ -70,8 +70,8 @@ fn swapped_labels_are_found_and_put_right() {
     let labels = ["R.Knee".to_owned(), "L.Knee".to_owned()];
     let flaws = Flaws { noise: 0.001, missing: 0.02, swap: Some((labels, 60..110)), seed: 7 };
     let recording = record(&model, &truth, &flaws);
-    let plain = run(&model, &recording, &Plan::default());
-    let robust = run(&model, &recording, &Plan { robust: true, ..Plan::default() });
+    let plain = run(&model, &recording, &Request::default());
+    let robust = run(&model, &recording, &Request { robust: true, ..Request::default() });
     let [swap] = &robust.swaps[..] else { panic!("{:?}", robust.swaps) };
     let Swap { labels, frames } = swap;
     let mut names = labels.clone();
@@ -93,8 +93,8 @@ fn frames_without_markers_are_marked_and_the_run_goes_on() {
     let mut recording = record(&model, &truth, &flaws);
     let width = recording.labels.len();
     recording.positions[30 * width..45 * width].fill(Observed::MISSING);
-    let tracking = run(&model, &recording, &Plan::default());
-    let failed: Vec<usize> = tracking.summary().failed.iter().map(|f| f.0).collect();
+    let tracking = run(&model, &recording, &Request::default());
+    let failed: Vec<usize> = tracking.summary().failed.iter().map(|f| f.frame).collect();
     assert_eq!(failed, (30..45).collect::<Vec<_>>());
     let (rms, _) = angle_errors(
         &model,
@@ -110,8 +110,9 @@ fn an_answer_does_not_depend_on_where_the_recording_was_cut() {
     let truth = walk(&model, 200, 100.0);
     let recording =
         record(&model, &truth, &Flaws { noise: 0.002, missing: 0.03, swap: None, seed: 11 });
-    let whole = run(&model, &recording, &Plan::default());
-    let part = run(&model, &recording, &Plan { time_range: Some([0.5, 1.5]), ..Plan::default() });
+    let whole = run(&model, &recording, &Request::default());
+    let part =
+        run(&model, &recording, &Request { time_range: Some([0.5, 1.5]), ..Request::default() });
     assert_eq!(part.frames, 50..151);
     let same = Motion { times: vec![], frames: whole.motion.frames[50..151].to_vec() };
     let (_, max) = angle_errors(&model, &part.motion, &same);

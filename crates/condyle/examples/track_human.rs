@@ -6,7 +6,7 @@
 
 use condyle::formats::Recording;
 use condyle::scaling::{self, Plan as Sizing};
-use condyle::tracking::{Plan, track};
+use condyle::tracking::{Request, track};
 use condyle::{Model, open};
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -73,7 +73,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Mean over the frames of the RMS over all markers that model and recording share.
 fn error(model: &Model, recording: &Recording) -> Result<String, Box<dyn Error>> {
-    let tracking = track(model, recording, &Plan::default(), &mut |_, _| {})?;
+    let tracking = track(model, recording, &Request::default(), &mut |_, _| {})?;
     let summary = tracking.summary();
     Ok(format!("{:.1} mm ({})", 1e3 * summary.rms, summary.markers_used))
 }

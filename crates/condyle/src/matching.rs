@@ -1,6 +1,6 @@
 //! Which recorded marker is which marker of the model.
 
-use condyle_formats::Diagnostic;
+use condyle_diagnostics::Diagnostic;
 use condyle_model::Model;
 
 /// A recorded marker and the model's marker of the same name.

@@ -3,8 +3,8 @@
 
 use condyle::math::{Quat, Vec3};
 use condyle::motion::Orientations;
+use condyle::tracking::{OrientationTarget, Rules, Stream, Targets, Tracker};
 use condyle::{Mode, Pose, open};
-use condyle_track::{OrientationTarget, Rules, Stream, Targets, Tracker};
 use std::path::{Path, PathBuf};
 
 fn data() -> Option<PathBuf> {

@@ -6,7 +6,7 @@
 
 use condyle::formats::opensim::setup::{self, IkTasks};
 use condyle::model::Mode;
-use condyle::tracking::{Plan, Tracking, track};
+use condyle::tracking::{Request, Tracking, track};
 use condyle::{Model, Pose, Program, open};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -28,12 +28,12 @@ fn pairs() -> Vec<Value> {
 }
 
 /// A setup, or a task set alone with the weight that the pair states.
-fn plan(data: &Path, pair: &Value) -> Plan {
-    let Some(name) = pair["setup"].as_str() else { return Plan::default() };
+fn request(data: &Path, pair: &Value) -> Request {
+    let Some(name) = pair["setup"].as_str() else { return Request::default() };
     let path = data.join(name);
     let bytes = std::fs::read(&path).unwrap();
-    let mut plan = match open::setup(&path) {
-        Ok(read) => Plan::from_setup(&read.value),
+    let mut request = match open::setup(&path) {
+        Ok(read) => Request::from_setup(&read.value),
         Err(_) => {
             let tasks = setup::tasks_from_bytes(&bytes).unwrap().value;
             let mut setup =
@@ -41,19 +41,19 @@ fn plan(data: &Path, pair: &Value) -> Plan {
                     .unwrap()
                     .value;
             setup.tasks = IkTasks::Inline(tasks);
-            Plan::from_setup(&setup)
+            Request::from_setup(&setup)
         }
     };
-    plan.time_range = None;
-    plan
+    request.time_range = None;
+    request
 }
 
 fn run(data: &Path, pair: &Value, threads: usize) -> Option<(Model, Tracking)> {
     let model_path = data.join(pair["model"].as_str().unwrap());
     let model = open::model(&model_path).ok()?.value;
     let recording = open::recording(&data.join(pair["trial"].as_str().unwrap())).unwrap().value;
-    let plan = Plan { threads: Some(threads), ..plan(data, pair) };
-    let tracking = track(&model, &recording, &plan, &mut |_, _| {}).unwrap();
+    let request = Request { threads: Some(threads), ..request(data, pair) };
+    let tracking = track(&model, &recording, &request, &mut |_, _| {}).unwrap();
     Some((model, tracking))
 }
 

@@ -9,11 +9,13 @@ use crate::output;
 use crate::progress::frames_bar;
 use clap::Args;
 use condyle::formats::{Recording, trc};
-use condyle::tracking::{Plan, Tracking, track};
+use condyle::tracking::{Job, Request, Tracking};
 use condyle::{CoordinateKind, Mode, Model, Motion, Pose, Program};
 use figure::{Flaws, record, walk, walker};
 use serde_json::json;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub(crate) struct Demo {
@@ -35,7 +37,7 @@ const SWAPPED_TO: usize = 330;
 
 impl Demo {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
-        let model = walker();
+        let model = Arc::new(walker());
         let truth = walk(&model, FRAMES, RATE);
         let flaws = Flaws {
             noise: NOISE,
@@ -64,21 +66,24 @@ impl Demo {
                 .as_bytes(),
             )?;
         }
-        let plain = tracked(&model, &recording, false)?;
-        let robust = tracked(&model, &recording, true)?;
+        let (plain, rate_plain) = tracked(&model, &recording, false)?;
+        let (robust, rate_robust) = tracked(&model, &recording, true)?;
         let [off_plain, off_robust] =
             [&plain, &robust].map(|t| Closeness::of(&model, &t.motion, &truth));
         if self.json {
             output::print_json(&json!({
                 "frames": FRAMES,
-                "plain": off_plain.json(&plain),
-                "robust": off_robust.json(&robust),
+                "plain": off_plain.json(&plain, rate_plain),
+                "robust": off_robust.json(&robust, rate_robust),
                 "swapped_labels": robust.swaps.iter().map(|s| json!({
                     "labels": s.labels, "frames": [s.frames.start, s.frames.end],
                 })).collect::<Vec<_>>(),
             }))?;
         } else {
-            output::print(table(&plain, &robust, &off_plain, &off_robust).as_bytes())?;
+            output::print(
+                table([(&plain, &off_plain, rate_plain), (&robust, &off_robust, rate_robust)])
+                    .as_bytes(),
+            )?;
             output::print(findings(&model, &robust, &off_robust).as_bytes())?;
         }
         if let Some(folder) = &self.output {
@@ -113,15 +118,24 @@ impl Demo {
     }
 }
 
-fn tracked(model: &Model, recording: &Recording, robust: bool) -> Result<Tracking, Failure> {
+/// The tracking and its frames per second.
+fn tracked(
+    model: &Arc<Model>,
+    recording: &Recording,
+    robust: bool,
+) -> Result<(Tracking, f64), Failure> {
     let bar = frames_bar(if robust { "tracking, robust" } else { "tracking" });
-    let plan = Plan { robust, threads: Some(1), ..Plan::default() };
-    let tracking = track(model, recording, &plan, &mut |done, total| {
+    let request = Request { robust, threads: Some(1), ..Request::default() };
+    let job = Job::new(Arc::clone(model), recording, &request)?;
+    let start = Instant::now();
+    let tracking = job.run(&mut |done, total| {
         bar.set_length(total as u64);
         bar.set_position(done as u64);
-    })?;
+    });
+    let seconds = start.elapsed().as_secs_f64();
     bar.finish_and_clear();
-    Ok(tracking)
+    let rate = tracking.answers.len() as f64 / seconds.max(1e-9);
+    Ok((tracking, rate))
 }
 
 /// How close a motion comes to the true one.
@@ -169,10 +183,10 @@ impl Closeness {
         Self { angles: (sum / n.max(1.0)).sqrt(), worst, origins }
     }
 
-    fn json(&self, tracking: &Tracking) -> serde_json::Value {
+    fn json(&self, tracking: &Tracking, rate: f64) -> serde_json::Value {
         let summary = tracking.summary();
         json!({
-            "frames_per_second": summary.frames_per_second,
+            "frames_per_second": rate,
             "marker_rms_m": summary.rms,
             "angle_rms_deg": self.angles,
             "worst_coordinate": self.worst.0,
@@ -183,30 +197,23 @@ impl Closeness {
     }
 }
 
-fn table(
-    plain: &Tracking,
-    robust: &Tracking,
-    off_plain: &Closeness,
-    off_robust: &Closeness,
-) -> String {
+fn table(runs: [(&Tracking, &Closeness, f64); 2]) -> String {
     let row = |name: &str, values: [String; 2]| {
         let [a, b] = values;
         vec![name.to_owned(), a, b]
     };
-    let both =
-        |f: &dyn Fn(&Tracking, &Closeness) -> String| [f(plain, off_plain), f(robust, off_robust)];
     output::columns(&[
         row("", ["track".to_owned(), "track --robust".to_owned()]),
-        row(
-            "frames per second, one thread",
-            both(&|t, _| format!("{:.0}", t.summary().frames_per_second)),
-        ),
+        row("frames per second, one thread", runs.map(|(_, _, rate)| format!("{rate:.0}"))),
         row(
             "markers off the recording, RMS",
-            both(&|t, _| format!("{:.2} mm", 1e3 * t.summary().rms)),
+            runs.map(|(t, ..)| format!("{:.2} mm", 1e3 * t.summary().rms)),
         ),
-        row("angles off the truth, RMS", both(&|_, c| format!("{:.2}°", c.angles))),
-        row("joints off the truth, RMS", both(&|_, c| format!("{:.2} mm", 1e3 * c.origins))),
+        row("angles off the truth, RMS", runs.map(|(_, c, _)| format!("{:.2}°", c.angles))),
+        row(
+            "joints off the truth, RMS",
+            runs.map(|(_, c, _)| format!("{:.2} mm", 1e3 * c.origins)),
+        ),
     ])
 }
 

@@ -7,10 +7,12 @@ use crate::output;
 use crate::progress::frames_bar;
 use clap::{Args, ValueEnum};
 use condyle::formats::{Recording, csv};
-use condyle::tracking::{Plan, Tracking, track};
-use condyle::{CoordinateId, Model, open};
+use condyle::tracking::{Job, MarkerErrors, Report, Request, Tracking};
+use condyle::{Model, open};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub(crate) struct Track {
@@ -56,8 +58,8 @@ enum Limits {
 
 impl Track {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
-        let model = warned(&self.model, open::model(&self.model)?);
-        let plan = self.plan()?;
+        let model = Arc::new(warned(&self.model, open::model(&self.model)?));
+        let request = self.request()?;
         let several = self.trials.len() > 1;
         if several && self.output.as_ref().is_some_and(|o| o != Path::new("-") && !is_folder(o)) {
             return Err(Failure::new("several recordings need a folder for -o"));
@@ -71,22 +73,24 @@ impl Track {
                 bar.set_length(total as u64);
                 bar.set_position(done as u64);
             };
-            let tracking = track(&model, &recording, &plan, &mut progress)
+            let job = Job::new(Arc::clone(&model), &recording, &request)
                 .map_err(|error| Failure::new(format!("{}: {error}", trial.display())))?;
+            let start = Instant::now();
+            let tracking = job.run(&mut progress);
+            let seconds = start.elapsed().as_secs_f64();
             bar.finish_and_clear();
             warn_about(trial, &tracking.warnings);
-            let summary = tracking.summary();
-            failed |= !summary.failed.is_empty();
+            let report = tracking.report(&model);
+            failed |= !report.summary.failed.is_empty();
             self.write_motion(&model, trial, &recording, &tracking)?;
             if let Some(path) = &self.errors {
                 let path = self.for_trial(path, trial, "csv");
                 output::write(&path, error_table(&tracking).as_bytes())?;
             }
-            let report = report(&model, trial, &recording, &tracking);
             if !self.json && self.output.as_deref() != Some(Path::new("-")) {
-                print_summary(trial, &recording, &tracking)?;
+                print_summary(trial, &recording, &report, seconds)?;
             }
-            reports.push(report);
+            reports.push(json(trial, &report, seconds));
         }
         let whole = if several { Value::Array(reports) } else { reports.remove(0) };
         if let Some(path) = &self.report {
@@ -99,24 +103,22 @@ impl Track {
         Ok(if failed { Outcome::DoesNotHold } else { Outcome::Done })
     }
 
-    fn plan(&self) -> Result<Plan, Failure> {
-        let mut plan = Plan::default();
+    fn request(&self) -> Result<Request, Failure> {
+        let mut request = Request::default();
         if let Some(path) = &self.setup {
             let setup = warned(path, open::setup(path)?);
-            plan = Plan::from_setup(&setup);
+            request = Request::from_setup(&setup);
             if let Some(name) = &setup.coordinate_file
-                && plan.coordinates.iter().any(|(_, _, t)| {
-                    *t == condyle::formats::opensim::setup::CoordinateTarget::FromFile
-                })
+                && request.wants_values()
             {
                 let path = open::beside(path, name);
-                plan.coordinate_file = Some(warned(&path, open::table(&path)?));
+                request.coordinate_values = Some(warned(&path, open::table(&path)?));
             }
         }
-        plan.limits = self.limits == Limits::On;
-        plan.robust = self.robust;
-        plan.threads = self.threads.map(usize::from);
-        Ok(plan)
+        request.limits = self.limits == Limits::On;
+        request.robust = self.robust;
+        request.threads = self.threads.map(usize::from);
+        Ok(request)
     }
 
     /// A path for one of several recordings: a file of the trial's name in the folder.
@@ -160,83 +162,62 @@ fn error_table(tracking: &Tracking) -> String {
     csv::write_marker_errors(rows)
 }
 
-fn report(model: &Model, trial: &Path, recording: &Recording, tracking: &Tracking) -> Value {
-    let s = tracking.summary();
-    let markers: serde_json::Map<String, Value> = tracking
-        .markers
-        .iter()
-        .zip(tracking.marker_errors())
-        .map(|(name, (rms, max))| (name.clone(), json!({ "rms_m": rms, "max_m": max })))
-        .collect();
-    let failed: Vec<Value> = s
+fn json(trial: &Path, report: &Report, seconds: f64) -> Value {
+    let s = &report.summary;
+    let errors = |m: &MarkerErrors| (m.name.clone(), json!({ "rms_m": m.rms, "max_m": m.max }));
+    let markers: serde_json::Map<String, Value> = report.markers.iter().map(errors).collect();
+    let failed = s
         .failed
         .iter()
-        .map(|&(frame, status)| {
-            json!({ "frame": frame, "time": recording.times.get(frame), "status": status.name() })
-        })
-        .collect();
-    let swaps: Vec<Value> = tracking
-        .swaps
-        .iter()
-        .map(
-            |swap| json!({ "labels": swap.labels, "frames": [swap.frames.start, swap.frames.end] }),
-        )
-        .collect();
-    let closure = tracking.answers.iter().map(|a| a.closure_error).fold(0.0, f64::max);
-    let mostly = |(_, frames): &(CoordinateId, usize)| 2 * frames > s.frames;
-    let at_limit: Vec<String> = tracking
-        .at_limits(model)
-        .into_iter()
-        .filter(mostly)
-        .map(|(id, _)| model.coordinate_key(id))
-        .collect();
+        .map(|f| json!({ "frame": f.frame, "time": f.time, "status": f.status.name() }));
+    let swaps = report.swaps.iter().map(
+        |swap| json!({ "labels": swap.labels, "frames": [swap.frames.start, swap.frames.end] }),
+    );
     json!({
         "trial": trial.to_string_lossy(),
         "frames": s.frames,
-        "seconds": s.seconds,
-        "frames_per_second": s.frames_per_second,
+        "seconds": seconds,
+        "frames_per_second": s.frames as f64 / seconds.max(1e-9),
         "markers_used": s.markers_used,
         "rms_m": s.rms,
         "max_m": s.max,
         "objective": s.objective,
         "objective_markers": s.objective_markers,
-        "failed_frames": failed,
-        "loop_error_m": closure,
-        "iterations": tracking.answers.iter().map(|a| u64::from(a.iterations)).sum::<u64>(),
-        "mostly_at_limit": at_limit,
-        "swapped_labels": swaps,
+        "failed_frames": failed.collect::<Vec<_>>(),
+        "loop_error_m": report.loop_error,
+        "iterations": report.iterations,
+        "mostly_at_limit": report.mostly_at_limit,
+        "swapped_labels": swaps.collect::<Vec<_>>(),
         "markers": markers,
     })
 }
 
-fn print_summary(trial: &Path, recording: &Recording, tracking: &Tracking) -> Result<(), Failure> {
-    let s = tracking.summary();
+fn print_summary(
+    trial: &Path,
+    recording: &Recording,
+    report: &Report,
+    seconds: f64,
+) -> Result<(), Failure> {
+    let s = &report.summary;
     let mut text = format!(
         "{}: {} frames, {} of {} markers, {:.0} frames/s\n  marker error {:.2} mm RMS, {:.1} mm at worst\n",
         trial.display(),
         s.frames,
         s.markers_used,
         recording.labels.len(),
-        s.frames_per_second,
+        s.frames as f64 / seconds.max(1e-9),
         1e3 * s.rms,
         1e3 * s.max,
     );
-    let mut worst: Vec<(&String, (f64, f64))> =
-        tracking.markers.iter().zip(tracking.marker_errors()).collect();
-    worst.sort_by(|a, b| b.1.0.total_cmp(&a.1.0));
-    let rows: Vec<Vec<String>> = worst
-        .iter()
-        .take(3)
-        .map(|(name, (rms, max))| {
-            vec![
-                (*name).clone(),
-                format!("{:.1} mm RMS,", 1e3 * rms),
-                format!("{:.1} mm at worst", 1e3 * max),
-            ]
-        })
-        .collect();
+    let mut worst: Vec<&MarkerErrors> = report.markers.iter().collect();
+    worst.sort_by(|a, b| b.rms.total_cmp(&a.rms));
+    let row = |m: &&MarkerErrors| {
+        let [rms, max] = [1e3 * m.rms, 1e3 * m.max];
+        vec![m.name.clone(), format!("{rms:.1} mm RMS,"), format!("{max:.1} mm at worst")]
+    };
+    let rows: Vec<Vec<String>> = worst.iter().take(3).map(row).collect();
     text.push_str(&output::columns(&rows));
-    for swap in &tracking.swaps {
+    for swap in &report.swaps {
         text.push_str(&format!(
             "  labels `{}` and `{}` are swapped in frames {} to {}\n",
             swap.labels[0],
@@ -245,11 +226,12 @@ fn print_summary(trial: &Path, recording: &Recording, tracking: &Tracking) -> Re
             swap.frames.end - 1
         ));
     }
-    if let [(frame, status), ..] = s.failed[..] {
+    if let [first, ..] = s.failed[..] {
         text.push_str(&format!(
-            "  {} frames not solved, the first is frame {frame} ({})\n",
+            "  {} frames not solved, the first is frame {} ({})\n",
             s.failed.len(),
-            status.name()
+            first.frame,
+            first.status.name()
         ));
     }
     output::print(text.as_bytes())

@@ -1,0 +1,211 @@
+//! One recording on its way through a tracker.
+
+use super::{Request, Swap, Tracking};
+use crate::matching::match_markers;
+use condyle_diagnostics::{Diagnostic, Error};
+use condyle_model::Model;
+use condyle_motion::{Motion, Recording};
+use condyle_track::robust::{self, Corrected};
+use condyle_track::{
+    FrameAnswer, MarkerTarget, Recorded, Rules, Scratch, Targets, Tracker, sequence,
+};
+use std::collections::HashMap;
+use std::ops::Range;
+use std::sync::{Arc, Mutex};
+
+/// A recording whose markers are matched to a model, ready to be solved.
+#[derive(Clone, Debug)]
+pub struct Job<'a> {
+    tracker: Arc<Tracker>,
+    recording: &'a Recording,
+    markers: Vec<String>,
+    labels: Vec<usize>,
+    frames: Range<usize>,
+    warnings: Vec<Diagnostic>,
+    threads: Option<usize>,
+    robust: bool,
+}
+
+impl<'a> Job<'a> {
+    /// Matches a recording to a model, and prepares what is asked.
+    ///
+    /// # Errors
+    /// `track/no-common-markers` if model and recording have no marker of positive weight in common,
+    /// `track/no-frames` if no frame lies in the time range.
+    pub fn new(
+        model: impl Into<Arc<Model>>,
+        recording: &'a Recording,
+        request: &Request,
+    ) -> Result<Self, Error> {
+        let model = model.into();
+        let (matches, mut warnings) = match_markers(&model, &recording.labels);
+        let mut targets = Targets::default();
+        let (mut labels, mut markers) = (vec![], vec![]);
+        for found in matches {
+            let name = &model.markers()[found.marker].name;
+            let weight = match &request.marker_weights {
+                None => 1.0,
+                Some(weights) => weights.get(name).copied().unwrap_or(0.0),
+            };
+            if weight > 0.0 {
+                targets.markers.push(MarkerTarget { marker: found.marker, weight });
+                labels.push(found.label);
+                markers.push(name.clone());
+            }
+        }
+        if let Some(weights) = &request.marker_weights {
+            warnings.extend(unused_tasks(weights, &markers));
+        }
+        if targets.markers.is_empty() {
+            return Err(no_common_markers(&model, recording));
+        }
+        let frames = frames_in(recording, request.time_range)?;
+        let times = &recording.times[frames.clone()];
+        request.add_coordinates(&model, times, &mut targets, &mut warnings);
+        let weight = request.closure_weight;
+        targets.closure_weight = weight.is_finite().then_some(weight);
+        let (threads, robust) = (request.threads, request.robust);
+        let rules = Rules { limits: request.limits, robust, ..Rules::default() };
+        let tracker = Arc::new(Tracker::new(model, targets, rules));
+        Ok(Self { tracker, recording, markers, labels, frames, warnings, threads, robust })
+    }
+
+    /// The tracker, which a [`Stream`](super::Stream) can share.
+    pub fn tracker(&self) -> &Arc<Tracker> {
+        &self.tracker
+    }
+
+    /// Tracks all frames; with a robust request, once more with exchanged labels put right.
+    /// `progress` hears how many frames of how many are done.
+    ///
+    /// Frames that cannot be solved are marked in their answer.
+    pub fn run(&self, mut progress: &mut (dyn FnMut(usize, usize) + Send)) -> Tracking {
+        let first = self.frames.start;
+        let recorded = |frame: usize, seen: &mut Vec<Option<[f64; 3]>>| {
+            let row = self.recording.frame(first + frame);
+            seen.clear();
+            seen.extend(self.labels.iter().map(|&label| row.get(label)?.position()));
+        };
+        let mut answers = self.pass(&recorded, &mut progress);
+        let mut swaps = vec![];
+        if self.robust {
+            let mut scratch = Scratch::new(&self.tracker);
+            let exchanged =
+                robust::find_exchanged(&self.tracker, &mut scratch, &recorded, &answers);
+            if !exchanged.is_empty() {
+                let corrected = Corrected { recorded: &recorded, exchanged: &exchanged };
+                answers = self.pass(&corrected, &mut progress);
+            }
+            let name = |marker: usize| self.recording.labels[self.labels[marker]].clone();
+            swaps.extend(exchanged.iter().map(|e| Swap {
+                labels: e.markers.map(name),
+                frames: first + e.frames.start..first + e.frames.end,
+            }));
+        }
+        let motion = Motion {
+            times: self.recording.times[self.frames.clone()].to_vec(),
+            frames: answers.iter().map(|a| a.coordinates.clone()).collect(),
+        };
+        let (markers, labels) = (self.markers.clone(), self.labels.clone());
+        let (frames, warnings) = (self.frames.clone(), self.warnings.clone());
+        Tracking { motion, answers, markers, labels, frames, warnings, swaps }
+    }
+
+    fn pass(
+        &self,
+        recorded: &dyn Recorded,
+        progress: &mut &mut (dyn FnMut(usize, usize) + Send),
+    ) -> Vec<FrameAnswer> {
+        let total = self.frames.len();
+        let chunks = sequence::cut(total);
+        let tracker = &*self.tracker;
+        let mut scratch = Scratch::new(tracker);
+        let keys = sequence::keys(tracker, &mut scratch, recorded, &chunks);
+        let progress = Mutex::new((0usize, progress));
+        let solve = |index: usize, scratch: &mut Scratch| {
+            let chunk = &chunks[index];
+            let answers =
+                sequence::solve_chunk(tracker, scratch, recorded, chunk, &keys[index], total);
+            if let Ok(mut told) = progress.lock() {
+                told.0 += chunk.frames.len();
+                let done = told.0;
+                (told.1)(done, total);
+            }
+            answers
+        };
+        let answers = in_parallel(self.threads, chunks.len(), || Scratch::new(tracker), solve);
+        sequence::stitch(tracker, &mut scratch, recorded, &chunks, answers)
+    }
+}
+
+/// A warning about weights of markers that are not tracked.
+fn unused_tasks(weights: &HashMap<String, f64>, markers: &[String]) -> Option<Diagnostic> {
+    let unused = weights.iter().filter(|(name, weight)| **weight > 0.0 && !markers.contains(name));
+    let mut unused: Vec<String> = unused.map(|(name, _)| format!("`{name}`")).collect();
+    unused.sort();
+    let list = unused.join(", ");
+    let message = format!("tasks for markers that model or recording lack: {list}");
+    (!unused.is_empty()).then(|| Diagnostic::warning("track/unused-task", message))
+}
+
+fn no_common_markers(model: &Model, recording: &Recording) -> Error {
+    let some = |names: &mut dyn Iterator<Item = &String>| -> String {
+        names.take(4).map(String::as_str).collect::<Vec<_>>().join(", ")
+    };
+    let of_model = some(&mut model.markers().iter().map(|m| &m.name));
+    let of_recording = some(&mut recording.labels.iter());
+    let message = match model.markers() {
+        [] => format!(
+            "the model has no markers (the recording's are {of_recording}, …): add a marker set to \
+             the model"
+        ),
+        _ => format!(
+            "model and recording share no marker with a positive weight: the model has {of_model}, \
+             …; the recording has {of_recording}, …"
+        ),
+    };
+    Error::new("track/no-common-markers", message)
+}
+
+fn frames_in(recording: &Recording, range: Option<[f64; 2]>) -> Result<Range<usize>, Error> {
+    let times = &recording.times;
+    let Some([first, last]) = range else { return Ok(0..times.len()) };
+    // A little slack: ranges are written with fewer digits than times.
+    let slack = 1e-6;
+    let start = times.partition_point(|&t| t < first - slack);
+    let end = times.partition_point(|&t| t <= last + slack);
+    if start < end {
+        return Ok(start..end);
+    }
+    let [from, to] = [times.first(), times.last()].map(|t| t.copied().unwrap_or(0.0));
+    let message = format!(
+        "no frame lies between {first} and {last} s: the recording runs from {from} to {to} s"
+    );
+    Err(Error::new("track/no-frames", message))
+}
+
+/// Runs `work` for every index, on threads where the feature allows, in any order; the answers
+/// are in order.
+fn in_parallel<T: Send, S>(
+    threads: Option<usize>,
+    count: usize,
+    scratch: impl Fn() -> S + Sync + Send,
+    work: impl Fn(usize, &mut S) -> T + Sync + Send,
+) -> Vec<T> {
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        if threads != Some(1)
+            && let Ok(pool) =
+                rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()
+        {
+            return pool.install(|| {
+                let indices = (0..count).into_par_iter().with_max_len(1);
+                indices.map_init(scratch, |scratch, index| work(index, scratch)).collect()
+            });
+        }
+    }
+    let _ = threads;
+    let mut scratch = scratch();
+    (0..count).map(|index| work(index, &mut scratch)).collect()
+}
