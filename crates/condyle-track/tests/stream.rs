@@ -23,7 +23,7 @@ fn limb() -> Model {
     b.ball_joint("root", segment);
     let root = segment;
     let corners = [Vec3::X, Vec3::Y, Vec3::Z].map(|x| x * 0.1);
-    let mut mark = |b: &mut ModelBuilder, name: &str, segment| {
+    let mark = |b: &mut ModelBuilder, name: &str, segment| {
         for (i, &at) in corners.iter().enumerate() {
             b.marker(&format!("{name}{i}"), Some(segment), at);
         }
