@@ -2,7 +2,7 @@
 
 use condyle::Observed;
 use condyle::formats::Recording;
-use condyle::tracking::{Request, Swap, Tracking, track};
+use condyle::tracking::{PostureRequest, Request, Swap, Tracking, track};
 use condyle::{CoordinateKind, Model, Motion};
 
 #[path = "../src/commands/demo/figure.rs"]
@@ -117,4 +117,45 @@ fn an_answer_does_not_depend_on_where_the_recording_was_cut() {
     let same = Motion { times: vec![], frames: whole.motion.frames[50..151].to_vec() };
     let (_, max) = angle_errors(&model, &part.motion, &same);
     assert!(max < 0.02, "{max} degrees");
+}
+
+#[test]
+fn postures_and_values_are_asked_for_by_name() {
+    // The first angle of the figure, asked to rest where the markers do not have it.
+    let model = walker();
+    let truth = walk(&model, 70, 100.0);
+    let recording =
+        record(&model, &truth, &Flaws { noise: 0.0, missing: 0.0, swap: None, seed: 13 });
+    let id = model.coordinate_ids().find(|&id| {
+        let coordinate = model.coordinate(id);
+        coordinate.kind == CoordinateKind::Rotation && !coordinate.locked
+    });
+    let name = model.coordinate_key(id.unwrap());
+    let place = model.stored_range(id.unwrap()).start;
+    let at = |request: &Request| run(&model, &recording, request);
+    let free = at(&Request::default());
+    // So stiff that markers of a few centimetres have no say.
+    let stiff = |rest| Request {
+        postures: vec![
+            PostureRequest { coordinates: vec![(name.clone(), 2.0)], rest, stiffness: 1e4 },
+            PostureRequest { coordinates: vec![("nose".to_owned(), 1.0)], rest, stiffness: 1.0 },
+        ],
+        ..Request::default()
+    };
+    let held = at(&stiff(0.3));
+    let value = |t: &Tracking| t.motion.frames[69][place];
+    assert!((value(&held) - 0.15).abs() < 1e-4, "{}", value(&held));
+    assert!((value(&free) - value(&held)).abs() > 0.01, "{}", value(&free));
+    let (summary, report) = (held.summary(), held.report(&model));
+    assert!(summary.objective > free.summary().objective && summary.objective_posture > 0.0);
+    assert_eq!((free.summary().objective_posture, &report.summary), (0.0, &summary));
+    let [said] = &held.warnings[..] else { panic!("{:?}", held.warnings) };
+    assert!(said.code == "track/unknown-coordinate" && said.message.contains("`nose`"), "{said}");
+    let error = track(
+        &model,
+        &recording,
+        &Request { time_range: Some([7.0, 8.0]), ..Request::default() },
+        &mut |_, _| {},
+    );
+    assert_eq!(error.unwrap_err().code(), "track/no-frames");
 }

@@ -9,7 +9,8 @@ pub enum FrameStatus {
     Uncertain,
     /// A loop, or the range of a coupled coordinate, could not be met.
     Infeasible,
-    /// No marker with a positive weight was seen; the posture is that of the start.
+    /// No marker with a positive weight was seen; the posture is that of the start, unless other targets
+    /// say where to go.
     NoMarkers,
 }
 
@@ -91,5 +92,19 @@ pub(crate) fn better(a: &FrameAnswer, b: &FrameAnswer) -> bool {
         (false, true) => true,
         (true, false) => false,
         _ => a.minimised() < b.minimised() * (1.0 - 1e-6) - 1e-15,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn answers_are_compared_by_all_that_is_minimised() {
+        let of = |objective, posture| FrameAnswer { objective, posture, ..FrameAnswer::start(&[]) };
+        assert!(better(&of(2e-6, 1e-6), &of(1e-6, 3e-6)));
+        assert!(!better(&of(1e-6, 3e-6), &of(2e-6, 1e-6)));
+        let broken = FrameAnswer { status: FrameStatus::Infeasible, ..of(0.0, 0.0) };
+        assert!(better(&of(1e-6, 0.0), &broken));
     }
 }

@@ -230,23 +230,6 @@ fn a_posture_gives_way_by_its_stiffness_and_is_reported_apart() {
 }
 
 #[test]
-fn what_leans_less_on_its_posture_wins_where_markers_cannot_tell() {
-    // One angle, seen from the axis alone: F is nothing everywhere, and P is least at the rest.
-    let mut b = ModelBuilder::new("top");
-    let top = b.segment("top", None);
-    b.hinge("joint", top, "spin", Vec3::Y);
-    b.marker("tip", Some(top), Vec3::Y);
-    let model = b.build().unwrap();
-    let spin = model.find_coordinate("spin").unwrap();
-    let posture = PostureTarget { terms: vec![(spin, 1.0)], rest: 0.4, stiffness: 1e-5 };
-    let markers = vec![MarkerTarget { marker: 0, weight: 1.0 }];
-    let targets = Targets { markers, postures: vec![posture], ..Targets::default() };
-    let tracker = Tracker::new(model, targets, Rules::default());
-    let found = tracker.solve_first(&mut Scratch::new(&tracker), &[Some([0.0, 1.0, 0.0])], 0, 4);
-    assert!((found.coordinates[0] - 0.4).abs() < 1e-6 && found.posture < 1e-15, "{found:?}");
-}
-
-#[test]
 fn a_model_its_tracker_and_a_stream_move_together_and_find_back_after_a_gap() {
     struct Laboratory {
         model: Arc<Model>,
