@@ -5,7 +5,7 @@ use condyle_math::function::{Curve, Function, SimmSpline};
 use condyle_math::{Quat, Vec3};
 use condyle_model::{
     Component, CoordinateId, CoordinateKind, JointSetId, Model, ModelBuilder, Range, SegmentId,
-    Source, component,
+    Signal, component,
 };
 
 const RIGHT: f64 = 1.0;
@@ -198,13 +198,13 @@ impl Body {
         let set = self.b.joint_set(&format!("patellofemoral_{side}"));
         let beta =
             self.b.coordinate(set, &format!("knee_angle_{side}_beta"), CoordinateKind::Rotation);
-        self.b.follow(beta, Source::Coordinate(flexion));
+        self.b.follow(beta, Signal::Coordinate(flexion));
         let functions =
             [3.0, 6.0].map(|factor| Function { factor, curve: Curve::SimmSpline(spline()) });
         let map = component::Map { input: beta.into(), functions: functions.to_vec() };
         let forward = self.b.component(set, "glide", Component::Map(map));
         let up = match forward {
-            Source::Output(id, _) => Source::Output(id, 1),
+            Signal::Output(id, _) => Signal::Output(id, 1),
             coordinate => coordinate,
         };
         let factors = vec![

@@ -5,7 +5,7 @@ use condyle_math::function::{Function, SimmSpline};
 use condyle_math::{Affine, Quat, Scalar, Vec3};
 use condyle_model::component::{
     Along, Centre, Compensate, Component, ConstantCurvature, Contact, ContactPair, Curve, Depend,
-    Ellipsoid, Gliding, Heading, JointCone, Law, Pivot, Registry, Scale, Shear, Source,
+    Ellipsoid, Gliding, Heading, JointCone, Law, Pivot, Registry, Scale, Shear, Signal,
     SurfaceAxis, Swinging,
 };
 use condyle_model::{
@@ -18,16 +18,16 @@ pub struct Kind {
     pub name: &'static str,
     /// A joint of few fixed axes, as every skeleton has them.
     pub simple: bool,
-    make: fn(&mut ModelBuilder, JointSetId, SegmentId) -> Source,
+    make: fn(&mut ModelBuilder, JointSetId, SegmentId) -> Signal,
 }
 
 const OBLIQUE: Vec3 = Vec3::new(0.6, -0.48, 0.64);
 
-fn angle(b: &mut ModelBuilder, set: JointSetId, name: &str) -> Source {
+fn angle(b: &mut ModelBuilder, set: JointSetId, name: &str) -> Signal {
     b.coordinate(set, name, CoordinateKind::Rotation).into()
 }
 
-fn turns(b: &mut ModelBuilder, set: JointSetId, axes: &[Vec3]) -> Vec<Source> {
+fn turns(b: &mut ModelBuilder, set: JointSetId, axes: &[Vec3]) -> Vec<Signal> {
     axes.iter()
         .enumerate()
         .map(|(i, &axis)| {
@@ -37,7 +37,7 @@ fn turns(b: &mut ModelBuilder, set: JointSetId, axes: &[Vec3]) -> Vec<Source> {
         .collect()
 }
 
-fn slides(b: &mut ModelBuilder, set: JointSetId, axes: &[Vec3]) -> Vec<Source> {
+fn slides(b: &mut ModelBuilder, set: JointSetId, axes: &[Vec3]) -> Vec<Signal> {
     axes.iter()
         .enumerate()
         .map(|(i, &axis)| {
@@ -47,7 +47,7 @@ fn slides(b: &mut ModelBuilder, set: JointSetId, axes: &[Vec3]) -> Vec<Source> {
         .collect()
 }
 
-fn scale(b: &mut ModelBuilder, set: JointSetId, along: Along) -> Source {
+fn scale(b: &mut ModelBuilder, set: JointSetId, along: Along) -> Signal {
     let factor = b.coordinate(set, "factor", CoordinateKind::Scale).into();
     b.component(set, "scale", Component::Scale(Scale { factor, along }))
 }
@@ -59,13 +59,13 @@ fn path() -> Box<[SimmSpline; 3]> {
     }))
 }
 
-fn curve(b: &mut ModelBuilder, set: JointSetId, heading: Option<Heading>) -> Source {
+fn curve(b: &mut ModelBuilder, set: JointSetId, heading: Option<Heading>) -> Signal {
     let parameter = angle(b, set, "parameter");
     let curve = Curve { parameter, path: path(), heading };
     b.component(set, "curve", Component::Curve(curve))
 }
 
-fn pivot(b: &mut ModelBuilder, set: JointSetId, centre: Centre) -> Source {
+fn pivot(b: &mut ModelBuilder, set: JointSetId, centre: Centre) -> Signal {
     let angle = angle(b, set, "angle");
     let pivot = Pivot::new(angle, Vec3::Z, centre).unwrap_or_else(|e| panic!("an axis: {e}"));
     b.pivot(set, "pivot", pivot)
@@ -85,16 +85,16 @@ pub fn cone(rest: Vec3, half: f64) -> Cone {
         .unwrap_or_else(|e| panic!("star-shaped: {e}"))
 }
 
-fn ball_in_cone(b: &mut ModelBuilder, set: JointSetId, half: f64) -> Source {
+fn ball_in_cone(b: &mut ModelBuilder, set: JointSetId, half: f64) -> Signal {
     let angles = ["first", "second", "third"].map(|name| angle(b, set, name));
     let axes = [Vec3::Z, Vec3::X, Vec3::Y];
     let of = Swinging::Angles(angles, axes);
     let cone = JointCone { of, cone: cone(-Vec3::Y, half) };
-    let Source::Output(id, _) = b.component(set, "cone", Component::Cone(cone)) else {
+    let Signal::Output(id, _) = b.component(set, "cone", Component::Cone(cone)) else {
         unreachable!("a component has outputs")
     };
     let turns = (0..3)
-        .map(|k| b.rotate(set, &format!("turn_{k}"), Source::Output(id, k), axes[k as usize]));
+        .map(|k| b.rotate(set, &format!("turn_{k}"), Signal::Output(id, k), axes[k as usize]));
     let turns = turns.collect();
     b.product(set, "product", turns)
 }

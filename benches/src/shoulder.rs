@@ -5,7 +5,7 @@ use crate::joints::{SCAPULA, cone, gliding};
 use condyle_math::Vec3;
 use condyle_math::function::{Curve, Function, PiecewiseLinear};
 use condyle_model::component::{
-    Centre, Compensate, Component, Contact, Depend, JointCone, Pivot, Source, Swinging,
+    Centre, Compensate, Component, Contact, Depend, JointCone, Pivot, Signal, Swinging,
 };
 use condyle_model::{CoordinateKind, Model, ModelBuilder};
 
@@ -22,14 +22,14 @@ pub fn network() -> Model {
     let set = b.joint_set("shoulder");
     let names = ["flexion", "abduction", "twist", "elevation", "protraction"];
     let [flexion, abduction, twist, elevation, protraction] =
-        names.map(|name| Source::from(b.coordinate(set, name, CoordinateKind::Rotation)));
+        names.map(|name| Signal::from(b.coordinate(set, name, CoordinateKind::Rotation)));
     let lines = |points: &[(f64, f64)]| {
         let (x, y) = points.iter().map(|(x, y)| (x.to_radians(), y.to_radians())).unzip();
         let lines = PiecewiseLinear::new(x, y).unwrap_or_else(|e| panic!("increasing: {e}"));
         Function::from(Curve::PiecewiseLinear(lines))
     };
-    let output = |source: Source, k: u32| match source {
-        Source::Output(id, _) => Source::Output(id, k),
+    let output = |source: Signal, k: u32| match source {
+        Signal::Output(id, _) => Signal::Output(id, k),
         other => other,
     };
 

@@ -2,7 +2,7 @@
 
 use super::{Inspected, finding, real_range, tolerance};
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
-use condyle_model::component::Source;
+use condyle_model::component::Signal;
 use condyle_model::model::Condition;
 use condyle_model::{CoordinateId, CoordinateKind};
 use std::collections::HashSet;
@@ -19,7 +19,7 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
 }
 
 /// A follower that its leaders take out of its own range.
-fn range_left(subject: &Inspected<'_>, id: CoordinateId, source: Source) -> Option<Diagnostic> {
+fn range_left(subject: &Inspected<'_>, id: CoordinateId, source: Signal) -> Option<Diagnostic> {
     let (lower, upper) = real_range(subject.model, id)?;
     let taken = subject.reach.taken(source)?;
     let outside = |value: f64| (lower - value).max(value - upper);
@@ -99,7 +99,7 @@ fn default_ignored(subject: &Inspected<'_>, id: CoordinateId) -> Option<Diagnost
 const LONGEST_NAMED: usize = 8;
 
 /// A follower of a follower.
-fn chain(subject: &Inspected<'_>, id: CoordinateId, source: Source) -> Option<Diagnostic> {
+fn chain(subject: &Inspected<'_>, id: CoordinateId, source: Signal) -> Option<Diagnostic> {
     let mut path = vec![id];
     let mut seen = HashSet::new();
     let mut open = vec![source];
@@ -108,11 +108,11 @@ fn chain(subject: &Inspected<'_>, id: CoordinateId, source: Source) -> Option<Di
             continue;
         }
         match source {
-            Source::Coordinate(leader) => {
+            Signal::Coordinate(leader) => {
                 path.push(leader);
                 open = subject.model.coordinate(leader).follows.into_iter().collect();
             }
-            Source::Output(component, _) => {
+            Signal::Output(component, _) => {
                 let component = &subject.model.components()[component.index()].component;
                 open.extend(component.inputs().into_iter().map(|(_, _, source)| source));
             }

@@ -6,7 +6,7 @@
 use super::{Inspected, amount, finding};
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_math::function::Function;
-use condyle_model::component::{Component, Source};
+use condyle_model::component::{Component, Signal};
 use condyle_model::{CoordinateId, CoordinateKind};
 use std::collections::BTreeMap;
 
@@ -71,7 +71,7 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
 
 /// What an output is used as: an angle, a distance, the value of a coordinate, or something else.
 fn made(subject: &Inspected<'_>, component: usize, output: usize) -> CoordinateKind {
-    let is_it = |source: Source| matches!(source, Source::Output(id, n) if (id.index(), n as usize) == (component, output));
+    let is_it = |source: Signal| matches!(source, Signal::Output(id, n) if (id.index(), n as usize) == (component, output));
     for named in subject.model.components() {
         match &named.component {
             Component::Rotate(c) if is_it(c.angle) => return CoordinateKind::Rotation,
@@ -87,7 +87,7 @@ fn made(subject: &Inspected<'_>, component: usize, output: usize) -> CoordinateK
 /// A function by what it makes: a coordinate that follows it, or its component.
 fn name_of(subject: &Inspected<'_>, component: usize, set: &str) -> String {
     let follower = subject.model.coordinate_ids().find(|&id| {
-        matches!(subject.model.coordinate(id).follows, Some(Source::Output(made, _))
+        matches!(subject.model.coordinate(id).follows, Some(Signal::Output(made, _))
             if made.index() == component)
     });
     match follower {

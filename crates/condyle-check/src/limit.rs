@@ -3,7 +3,7 @@
 use super::{Inspected, amount, finding, length, real_range};
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_model::CoordinateKind;
-use condyle_model::component::{Component, JointCone, Source, Swinging};
+use condyle_model::component::{Component, JointCone, Signal, Swinging};
 
 /// A projection that jumps within this of a posture may do so in it: half a degree.
 const NEAR: f64 = 0.0087;
@@ -46,14 +46,14 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
 
 /// The posture inside the declared ranges that is nearest to a jump of the projection.
 fn jump(subject: &Inspected<'_>, name: &str, cone: &JointCone) -> Option<Diagnostic> {
-    let sources: &[Source] = match &cone.of {
+    let sources: &[Signal] = match &cone.of {
         Swinging::Angles(sources, _) => sources,
         Swinging::Directions(sources, _) => sources,
         Swinging::Orientation(_) => return None,
     };
     let mut ranges = vec![];
     for source in sources {
-        let Source::Coordinate(id) = *source else { return None };
+        let Signal::Coordinate(id) = *source else { return None };
         ranges.push((id, real_range(subject.model, id)?));
     }
     let mut worst = (f64::INFINITY, vec![]);

@@ -8,7 +8,7 @@ use super::closure::{Gap, gaps};
 use super::{amount, finding, length, listed, real_range, rounded, tolerance};
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_math::Quat;
-use condyle_model::component::Source;
+use condyle_model::component::Signal;
 use condyle_model::evaluate::ClosureRows;
 use condyle_model::{CoordinateId, CoordinateKind, Mode, Model, Pose, Program};
 use condyle_motion::Motion;
@@ -237,7 +237,7 @@ fn judged(model: &Model, given: &[CoordinateId]) -> Vec<bool> {
                 && match model.coordinate(id).follows {
                     None => given.contains(&id),
                     Some(_) => {
-                        reach.leaders(Source::Coordinate(id)).iter().any(|l| given.contains(l))
+                        reach.leaders(Signal::Coordinate(id)).iter().any(|l| given.contains(l))
                     }
                 }
         })

@@ -7,7 +7,8 @@ use std::collections::BTreeMap;
 pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     let model = subject.model;
     let set = |index: usize| &model.joint_sets()[index].name;
-    let families: [(&str, fn(String) -> Subject, Vec<String>); 4] = [
+    type Family<'n> = (&'n str, fn(String) -> Subject, Vec<String>);
+    let families: [Family<'_>; 4] = [
         ("segments", Subject::Segment, model.segments().iter().map(|s| s.name.clone()).collect()),
         (
             "joint sets",

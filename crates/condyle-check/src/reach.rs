@@ -5,7 +5,7 @@
 //! and with one leader it is known which of its values does it.
 
 use super::real_range;
-use condyle_model::component::{Component, Source, Swinging};
+use condyle_model::component::{Component, Signal, Swinging};
 use condyle_model::{CoordinateId, CoordinateKind, Model};
 use std::cell::Cell;
 use std::collections::HashMap;
@@ -26,8 +26,8 @@ const BUDGET: usize = 20_000_000;
 pub(super) struct Reach<'m> {
     model: &'m Model,
     /// Followers and outputs of components, each after what it reads.
-    order: Vec<Source>,
-    place: HashMap<Source, usize>,
+    order: Vec<Signal>,
+    place: HashMap<Signal, usize>,
     /// For each of them the free coordinates that determine it.
     leaders: Vec<Vec<CoordinateId>>,
     left: Cell<usize>,
@@ -51,10 +51,10 @@ impl Taken {
 }
 
 /// What a scalar reads: nothing for a coordinate that is free, or for what is no law of scalars.
-fn reads(model: &Model, source: Source) -> Vec<Source> {
+fn reads(model: &Model, source: Signal) -> Vec<Signal> {
     match source {
-        Source::Coordinate(id) => model.coordinate(id).follows.into_iter().collect(),
-        Source::Output(id, _) => {
+        Signal::Coordinate(id) => model.coordinate(id).follows.into_iter().collect(),
+        Signal::Output(id, _) => {
             let component = &model.components()[id.index()].component;
             component.inputs().into_iter().map(|(_, _, source)| source).collect()
         }
@@ -63,7 +63,7 @@ fn reads(model: &Model, source: Source) -> Vec<Source> {
 
 impl<'m> Reach<'m> {
     pub(super) fn new(model: &'m Model) -> Self {
-        let mut wanted: Vec<Source> = model.coordinate_ids().map(Source::Coordinate).collect();
+        let mut wanted: Vec<Signal> = model.coordinate_ids().map(Signal::Coordinate).collect();
         for named in model.components() {
             wanted.extend(named.component.inputs().into_iter().map(|(_, _, source)| source));
         }
@@ -76,7 +76,7 @@ impl<'m> Reach<'m> {
         };
         // Depth first with a stack: a scalar is computed after all that it reads.
         let mut seen = std::collections::HashSet::new();
-        let mut stack: Vec<(Source, bool)> = vec![];
+        let mut stack: Vec<(Signal, bool)> = vec![];
         for source in wanted {
             stack.push((source, false));
             while let Some((source, ready)) = stack.pop() {
@@ -95,9 +95,9 @@ impl<'m> Reach<'m> {
     }
 
     /// The leaders of a scalar, from those of what it reads.
-    fn leaders_of(&self, source: Source) -> Vec<CoordinateId> {
+    fn leaders_of(&self, source: Signal) -> Vec<CoordinateId> {
         let reads = reads(self.model, source);
-        if let (Source::Coordinate(id), []) = (source, &reads[..]) {
+        if let (Signal::Coordinate(id), []) = (source, &reads[..]) {
             return vec![id];
         }
         let mut leaders: Vec<CoordinateId> =
@@ -109,7 +109,7 @@ impl<'m> Reach<'m> {
     }
 
     /// The free coordinates that determine a scalar, in the model's order.
-    pub(super) fn leaders(&self, source: Source) -> &[CoordinateId] {
+    pub(super) fn leaders(&self, source: Signal) -> &[CoordinateId] {
         self.place.get(&source).map_or(&[], |&place| &self.leaders[place])
     }
 
@@ -119,28 +119,28 @@ impl<'m> Reach<'m> {
     }
 
     /// All that must be computed before a scalar, and itself, in order.
-    fn plan(&self, source: Source) -> Vec<Source> {
+    fn plan(&self, source: Signal) -> Vec<Signal> {
         let mut seen = std::collections::HashSet::from([source]);
         let mut open = vec![source];
         while let Some(next) = open.pop() {
             open.extend(reads(self.model, next).into_iter().filter(|&s| seen.insert(s)));
         }
-        let mut plan: Vec<Source> = seen.into_iter().collect();
+        let mut plan: Vec<Signal> = seen.into_iter().collect();
         plan.sort_by_key(|source| self.place.get(source));
         plan
     }
 
-    fn run(&self, plan: &[Source], leader: impl Fn(CoordinateId) -> f64) -> f64 {
-        let mut values: HashMap<Source, f64> = HashMap::with_capacity(plan.len());
+    fn run(&self, plan: &[Signal], leader: impl Fn(CoordinateId) -> f64) -> f64 {
+        let mut values: HashMap<Signal, f64> = HashMap::with_capacity(plan.len());
         let mut last = f64::NAN;
         for &source in plan {
-            let of = |source: Source| values.get(&source).copied().unwrap_or(f64::NAN);
+            let of = |source: Signal| values.get(&source).copied().unwrap_or(f64::NAN);
             last = match source {
-                Source::Coordinate(id) => match self.model.coordinate(id).follows {
+                Signal::Coordinate(id) => match self.model.coordinate(id).follows {
                     Some(follows) => of(follows),
                     None => leader(id),
                 },
-                Source::Output(id, output) => {
+                Signal::Output(id, output) => {
                     match &self.model.components()[id.index()].component {
                         Component::Map(map) => map
                             .functions
@@ -152,7 +152,7 @@ impl<'m> Reach<'m> {
                         }
                         // In open mode a cone passes its angles: each of these is taken.
                         Component::Cone(cone) => {
-                            let angles: &[Source] = match &cone.of {
+                            let angles: &[Signal] = match &cone.of {
                                 Swinging::Angles(angles, _) => angles,
                                 Swinging::Directions(angles, _) => angles,
                                 Swinging::Orientation(_) => &[],
@@ -169,13 +169,13 @@ impl<'m> Reach<'m> {
     }
 
     /// A scalar where every coordinate has its default.
-    pub(super) fn at_rest(&self, source: Source) -> f64 {
+    pub(super) fn at_rest(&self, source: Signal) -> f64 {
         self.run(&self.plan(source), |id| self.model.coordinate(id).default[0])
     }
 
     /// The values of a scalar while its leaders run through their declared ranges, locked ones
     /// standing at their defaults; none if a leader has no range, or if it is no law of scalars.
-    pub(super) fn taken(&self, source: Source) -> Option<Taken> {
+    pub(super) fn taken(&self, source: Signal) -> Option<Taken> {
         let leaders = self.leaders(source);
         if leaders.len() > MOST_LEADERS || !self.finished() {
             return None;
@@ -268,15 +268,15 @@ mod tests {
         let sources = [angles[0].into(), angles[1].into(), angles[2].into()];
         let of = Swinging::Angles(sources, [Vec3::Z, Vec3::X, Vec3::Y]);
         let held = b.component(set, "held", Component::Cone(JointCone { of, cone }));
-        let Source::Output(id, _) = held else { panic!("a component has outputs") };
+        let Signal::Output(id, _) = held else { panic!("a component has outputs") };
         for output in 0..3 {
-            b.rotate(set, "turn", Source::Output(id, output), Vec3::X);
+            b.rotate(set, "turn", Signal::Output(id, output), Vec3::X);
         }
         let model = b.build().unwrap();
         let reach = Reach::new(&model);
         for (output, [low, high]) in bounds.into_iter().enumerate() {
             // The cone is narrower than the ranges, which tracking does not know.
-            let taken = reach.taken(Source::Output(id, output as u32)).unwrap();
+            let taken = reach.taken(Signal::Output(id, output as u32)).unwrap();
             let [least, greatest] = taken.extremes().unwrap();
             let off = (least.1 - low).abs().max((greatest.1 - high).abs());
             assert!(off < 1e-15, "angle {output}: {off}");

@@ -3,7 +3,7 @@
 use super::{Inspected, finding};
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_math::{Mat3, Vec3};
-use condyle_model::component::{Component, Source};
+use condyle_model::component::{Component, Signal};
 use std::f64::consts::PI;
 
 /// Axes nearer than this to each other are nearly one.
@@ -14,7 +14,7 @@ const NEARLY_RIGHT: f64 = 0.5;
 
 /// One turn of a product, its axis in the frame of the joint when every turn stands at zero.
 struct Turn {
-    angle: Source,
+    angle: Signal,
     axis: Vec3,
 }
 
@@ -33,11 +33,11 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
 }
 
 /// The turns of a product that vary; fixed frames between them turn the axes after them.
-fn turns(subject: &Inspected<'_>, factors: &[Source]) -> Vec<Turn> {
+fn turns(subject: &Inspected<'_>, factors: &[Signal]) -> Vec<Turn> {
     let mut frame = Mat3::IDENTITY;
     let mut turns = vec![];
     for factor in factors {
-        let Source::Output(id, _) = factor else { continue };
+        let Signal::Output(id, _) = factor else { continue };
         match &subject.model.components()[id.index()].component {
             Component::Place(place) => frame = frame * place.child_in_parent.linear,
             Component::Rotate(turn) => {
@@ -128,7 +128,7 @@ fn singular(subject: &Inspected<'_>, set: &str, triple: &[Turn]) -> Option<Diagn
         [one, ..] => super::rounded(one, 1),
     };
     let names = names(subject, &[a, m, c]);
-    let middle = super::listed(&self::names(subject, &[m]));
+    let middle = super::listed(self::names(subject, &[m]));
     Some(finding(
         Severity::Note,
         "lint/singular-triple",

@@ -5,7 +5,7 @@ use condyle_diagnostics::{Diagnostic, Severity};
 use condyle_math::function::{Function, PiecewiseLinear, SimmSpline};
 use condyle_math::{Affine, Vec3};
 use condyle_model::component::{
-    Component, Contact, ContactPair, Gliding, JointCone, Source, Swinging,
+    Component, Contact, ContactPair, Gliding, JointCone, Signal, Swinging,
 };
 use condyle_model::model::{Closure, Condition};
 use condyle_model::{Cone, ConePoint, Projection};
@@ -446,7 +446,7 @@ fn in_a_cone(reach: f64, dent: bool) -> ModelBuilder {
     let angles = ["a", "b", "c"].map(|name| {
         let id = b.coordinate(set, name, CoordinateKind::Rotation);
         b.coordinate_mut(id).range = degrees(-reach, reach);
-        Source::from(id)
+        Signal::from(id)
     });
     let axes = [Vec3::Z, Vec3::X, Vec3::Y];
     let mut corners = vec![(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
@@ -459,12 +459,12 @@ fn in_a_cone(reach: f64, dent: bool) -> ModelBuilder {
         .map(|(x, z): (f64, f64)| ConePoint { direction: Vec3::new(x, -1.4, z), twist: None });
     let cone = Cone::new(-Vec3::Y, None, points.collect(), 0, Projection::Nearest).unwrap();
     let of = Swinging::Angles(angles, axes);
-    let Source::Output(cone, _) = b.component(set, "cone", Component::Cone(JointCone { of, cone }))
+    let Signal::Output(cone, _) = b.component(set, "cone", Component::Cone(JointCone { of, cone }))
     else {
         unreachable!("a component has outputs")
     };
     let turns = (0..3)
-        .map(|k| b.rotate(set, &format!("turn_{k}"), Source::Output(cone, k), axes[k as usize]));
+        .map(|k| b.rotate(set, &format!("turn_{k}"), Signal::Output(cone, k), axes[k as usize]));
     let turns = turns.collect();
     let motion = b.product(set, "motion", turns);
     b.output(set, arm, motion);

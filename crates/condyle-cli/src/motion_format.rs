@@ -2,15 +2,15 @@
 
 use crate::failure::{Failure, warned};
 use clap::builder::PossibleValuesParser;
-use condyle::formats::{FORMATS, Format, Kind};
+use condyle::formats::{ContentKind, FORMATS, Format};
 use condyle::{Model, Motion, Recording, encode, open};
 use std::path::Path;
 
 /// What a motion may be written as.
-const MOTION: [Kind; 2] = [Kind::Motion, Kind::Scene];
+const MOTION: [ContentKind; 2] = [ContentKind::Motion, ContentKind::Scene];
 
 /// The names that `--to` takes for these kinds.
-pub(crate) fn names(kinds: &'static [Kind]) -> PossibleValuesParser {
+pub(crate) fn names(kinds: &'static [ContentKind]) -> PossibleValuesParser {
     let written = FORMATS.iter().filter(|f| f.writes.iter().any(|kind| kinds.contains(kind)));
     PossibleValuesParser::new(written.map(|f| f.name).collect::<Vec<_>>())
 }

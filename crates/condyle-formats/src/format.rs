@@ -16,7 +16,7 @@ use condyle_model::Model;
 
 /// What a file may hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ContentKind {
     /// A model.
     Model,
     /// A marker recording.
@@ -31,7 +31,7 @@ pub enum Kind {
     Scene,
 }
 
-impl Kind {
+impl ContentKind {
     /// Its name with an article, for messages.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -73,17 +73,17 @@ pub enum Content {
 impl Content {
     /// What it is.
     #[must_use]
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> ContentKind {
         match self {
-            Self::Model(_) => Kind::Model,
+            Self::Model(_) => ContentKind::Model,
             #[cfg(feature = "document")]
-            Self::Document(_) => Kind::Model,
-            Self::Recording(_) => Kind::Recording,
-            Self::Table(_) => Kind::Motion,
+            Self::Document(_) => ContentKind::Model,
+            Self::Recording(_) => ContentKind::Recording,
+            Self::Table(_) => ContentKind::Motion,
             #[cfg(feature = "poses")]
-            Self::Poses(_) => Kind::Poses,
+            Self::Poses(_) => ContentKind::Poses,
             #[cfg(feature = "opensim")]
-            Self::Setup(_) | Self::Tasks(_) => Kind::Setup,
+            Self::Setup(_) | Self::Tasks(_) => ContentKind::Setup,
         }
     }
 }
@@ -125,9 +125,9 @@ pub struct Format {
     /// The endings of its files, in lower case, without the dot.
     pub endings: &'static [&'static str],
     /// What is read from it.
-    pub reads: &'static [Kind],
+    pub reads: &'static [ContentKind],
     /// What is written in it.
-    pub writes: &'static [Kind],
+    pub writes: &'static [ContentKind],
     /// Whether bytes look like it.
     sniff: fn(&[u8]) -> bool,
     read: fn(&[u8], &mut Include<'_>) -> Result<Read<Content>, Error>,
@@ -141,8 +141,8 @@ pub const FORMATS: &[Format] = &[
         name: "toml",
         title: "documents that people write",
         endings: &["toml"],
-        reads: &[Kind::Model],
-        writes: &[Kind::Model],
+        reads: &[ContentKind::Model],
+        writes: &[ContentKind::Model],
         sniff: |bytes| document::kind(bytes).is_some(),
         read: |bytes, include| {
             let read = document::read(utf8(bytes)?, include)?;
@@ -155,7 +155,7 @@ pub const FORMATS: &[Format] = &[
         name: "osim",
         title: "OpenSim's models and setups",
         endings: &["osim", "xml"],
-        reads: &[Kind::Model, Kind::Setup],
+        reads: &[ContentKind::Model, ContentKind::Setup],
         writes: &[],
         sniff: |bytes| starts(bytes, 4096).contains("<OpenSimDocument"),
         read: |bytes, _| {
@@ -171,8 +171,8 @@ pub const FORMATS: &[Format] = &[
         name: "trc",
         title: "marker recordings of Motion Analysis",
         endings: &["trc"],
-        reads: &[Kind::Recording],
-        writes: &[Kind::Recording],
+        reads: &[ContentKind::Recording],
+        writes: &[ContentKind::Recording],
         sniff: |bytes| starts(bytes, 64).to_ascii_lowercase().starts_with("pathfiletype"),
         read: |bytes, _| trc::from_bytes(bytes).map(|read| read.map(Content::Recording)),
     },
@@ -181,8 +181,8 @@ pub const FORMATS: &[Format] = &[
         name: "mot",
         title: "OpenSim's motions, in degrees",
         endings: &["mot"],
-        reads: &[Kind::Motion],
-        writes: &[Kind::Motion],
+        reads: &[ContentKind::Motion],
+        writes: &[ContentKind::Motion],
         sniff: |bytes| starts(bytes, 1 << 16).lines().any(|line| line.trim() == "endheader"),
         read: |bytes, _| sto::from_bytes(bytes).map(|read| read.map(Content::Table)),
     },
@@ -191,8 +191,8 @@ pub const FORMATS: &[Format] = &[
         name: "sto",
         title: "OpenSim's storage files, in degrees",
         endings: &["sto"],
-        reads: &[Kind::Motion],
-        writes: &[Kind::Motion],
+        reads: &[ContentKind::Motion],
+        writes: &[ContentKind::Motion],
         sniff: |_| false,
         read: |bytes, _| sto::from_bytes(bytes).map(|read| read.map(Content::Table)),
     },
@@ -201,8 +201,8 @@ pub const FORMATS: &[Format] = &[
         name: "csv",
         title: "comma-separated tables, in radians and metres where a model says which is which",
         endings: &["csv"],
-        reads: &[Kind::Motion],
-        writes: &[Kind::Motion, Kind::Recording],
+        reads: &[ContentKind::Motion],
+        writes: &[ContentKind::Motion, ContentKind::Recording],
         sniff: |bytes| starts(bytes, 16).to_ascii_lowercase().starts_with("time,"),
         read: |bytes, _| csv::from_bytes(bytes).map(|read| read.map(Content::Table)),
     },
@@ -212,7 +212,7 @@ pub const FORMATS: &[Format] = &[
         name: "json",
         title: "poses by the names of coordinates",
         endings: &["json"],
-        reads: &[Kind::Poses],
+        reads: &[ContentKind::Poses],
         writes: &[],
         sniff: |bytes| starts(bytes, 1024).starts_with(['{', '[']),
         read: |bytes, _| poses::read(bytes).map(|read| read.map(Content::Poses)),
@@ -224,7 +224,7 @@ pub const FORMATS: &[Format] = &[
         title: "binary glTF, an animated scene",
         endings: &["glb"],
         reads: &[],
-        writes: &[Kind::Scene],
+        writes: &[ContentKind::Scene],
         sniff: |bytes| bytes.starts_with(b"glTF"),
         read: |_, _| Err(Error::new("glb/not-read", "scenes are written, not read")),
     },
@@ -240,8 +240,8 @@ impl Format {
     /// The format of this ending, in any case.
     ///
     /// ```
-    /// use condyle_formats::{Format, Kind};
-    /// assert_eq!(Format::of_ending("TRC").map(|f| f.reads), Some(&[Kind::Recording][..]));
+    /// use condyle_formats::{Format, ContentKind};
+    /// assert_eq!(Format::of_ending("TRC").map(|f| f.reads), Some(&[ContentKind::Recording][..]));
     /// assert!(Format::of_ending("doc").is_none());
     /// ```
     #[must_use]
@@ -272,13 +272,13 @@ impl Format {
 
     /// The endings of all formats that hold this: `.mot, .sto, .csv`.
     #[must_use]
-    pub fn endings_that_read(kind: Kind) -> String {
+    pub fn endings_that_read(kind: ContentKind) -> String {
         endings(|f| f.reads.contains(&kind))
     }
 
     /// The endings of all formats in which this is written.
     #[must_use]
-    pub fn endings_that_write(kind: Kind) -> String {
+    pub fn endings_that_write(kind: ContentKind) -> String {
         endings(|f| f.writes.contains(&kind))
     }
 }

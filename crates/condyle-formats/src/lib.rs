@@ -37,6 +37,6 @@ pub mod xml;
 
 pub use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Subject, nearest};
 pub use condyle_motion::{AngleUnit, Gap, LengthUnit, Observed, Recording, Table};
-pub use format::{Content, FORMATS, Format, Id, Include, Kind};
+pub use format::{Content, ContentKind, FORMATS, Format, Id, Include};
 #[cfg(feature = "opensim")]
 pub use xml::{Element, XmlDocument};

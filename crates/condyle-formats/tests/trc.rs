@@ -1,6 +1,6 @@
 //! Every rule of the TRC reader, one small file each, and the round trip.
 
-use condyle_formats::trc::{self, Options};
+use condyle_formats::trc::{self, Dialect};
 use condyle_formats::{Error, LengthUnit, Read, Recording};
 use proptest::prelude::*;
 
@@ -66,7 +66,7 @@ fn missing_markers_are_blank_nan_or_infinite() {
 fn zero_is_missing_only_if_told() {
     let text = "PathFileType\nDataRate\tUnits\n100\tm\nFrame#\tTime\tA\n1\t0\t0\t0\t0\n";
     assert_eq!(trc::read(text).unwrap().value.position(0, 0), Some([0.0; 3]));
-    let told = trc::read_with(text, Options { zero_is_missing: true }).unwrap();
+    let told = trc::read_with(text, Dialect { zero_is_missing: true }).unwrap();
     assert_eq!(told.value.position(0, 0), None);
 }
 

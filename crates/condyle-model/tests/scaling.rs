@@ -6,7 +6,7 @@ mod grow;
 
 use condyle_math::function::{Function, FunctionOfSeveral};
 use condyle_math::{Affine, Mat3, Vec3};
-use condyle_model::component::{Component, Source};
+use condyle_model::component::{Component, Signal};
 use condyle_model::model::Condition;
 use condyle_model::{
     Closure, CoordinateKind, Mode, Model, ModelBuilder, Pose, Program, Range, SegmentId,
@@ -33,11 +33,11 @@ fn grows_whole(model: &Model) -> bool {
     model.components().iter().all(|named| match &named.component {
         Component::Custom(_) => false,
         Component::Translate(c) => match c.distance {
-            Source::Output(id, _) => matches!(
+            Signal::Output(id, _) => matches!(
                 model.components()[id.index()].component,
                 Component::Map(_) | Component::Combine(_)
             ),
-            Source::Coordinate(_) => false,
+            Signal::Coordinate(_) => false,
         },
         _ => true,
     })
@@ -45,21 +45,21 @@ fn grows_whole(model: &Model) -> bool {
 
 /// Whether a transform moves segments of which one hangs in the world: it then grows or not.
 fn shared_with_the_world(model: &Model) -> bool {
-    let readers: Vec<Vec<Source>> = model
+    let readers: Vec<Vec<Signal>> = model
         .components()
         .iter()
         .map(|c| c.component.inputs().into_iter().map(|(_, _, s)| s).collect())
         .collect();
-    let reach = |start: Source| {
+    let reach = |start: Signal| {
         let (mut open, mut met) = (vec![start], vec![]);
         while let Some(source) = open.pop() {
-            if let Source::Output(id, _) = source
+            if let Signal::Output(id, _) = source
                 && !met.contains(&id.index())
             {
                 met.push(id.index());
                 open.extend(&readers[id.index()]);
             }
-            if let Source::Coordinate(id) = source {
+            if let Signal::Coordinate(id) = source {
                 open.extend(model.coordinate(id).follows);
             }
         }

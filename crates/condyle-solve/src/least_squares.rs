@@ -52,7 +52,7 @@ pub struct LocalModel {
 
 /// Stopping criteria and the initial trust region.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options {
+pub struct Stopping {
     /// Stop when the model predicts a decrease of F by less than this fraction of F.
     pub tolerance: f64,
     /// Decreases of F below this count as zero, whatever F is.
@@ -65,7 +65,7 @@ pub struct Options {
     pub trust: f64,
 }
 
-impl Default for Options {
+impl Default for Stopping {
     fn default() -> Self {
         Self { tolerance: 1e-6, floor: 1e-18, feasibility: 1e-7, iterations: 60, trust: 0.5 }
     }
@@ -166,7 +166,7 @@ impl Solver {
     /// Minimises a problem from its current point, and moves that point to the minimum.
     ///
     /// Does not allocate.
-    pub fn minimise<P: Problem>(&mut self, problem: &mut P, options: &Options) -> Summary {
+    pub fn minimise<P: Problem>(&mut self, problem: &mut P, options: &Stopping) -> Summary {
         self.step.fill(0.0);
         let mut objective =
             problem.evaluate(&self.step, &mut self.equalities, &mut self.inequalities);
@@ -473,7 +473,7 @@ mod tests {
             bounds: [WIDE; 3],
             tie: None,
         };
-        let summary = Solver::new(&[1.0; 3], 0, 0).minimise(&mut arm, &Options::default());
+        let summary = Solver::new(&[1.0; 3], 0, 0).minimise(&mut arm, &Stopping::default());
         assert_eq!(summary.stop, Stop::Converged);
         // Only the prior of 1e-9 · Σ angle² is left.
         assert!(summary.objective < 1e-8, "{summary:?}");
@@ -488,7 +488,7 @@ mod tests {
             bounds: [WIDE; 3],
             tie: None,
         };
-        let summary = Solver::new(&[1.0; 3], 0, 0).minimise(&mut arm, &Options::default());
+        let summary = Solver::new(&[1.0; 3], 0, 0).minimise(&mut arm, &Stopping::default());
         // The straight arm of length 3 points at the goal at distance 5.
         assert!((summary.objective - 4.0).abs() < 1e-5, "{summary:?}");
     }
@@ -499,7 +499,7 @@ mod tests {
         let mut arm =
             Arm { angles: [0.2, 0.0, 1.0], trial: [0.0; 3], goal: [-1.0, 2.0], bounds, tie: None };
         let mut solver = Solver::new(&[1.0; 3], 0, 0);
-        solver.minimise(&mut arm, &Options::default());
+        solver.minimise(&mut arm, &Stopping::default());
         assert_eq!(arm.angles[0], 0.4);
         assert_eq!(arm.angles[1], 0.1);
 
@@ -510,7 +510,7 @@ mod tests {
             bounds: [WIDE; 3],
             tie: Some(1.1),
         };
-        let summary = Solver::new(&[1.0; 3], 1, 0).minimise(&mut tied, &Options::default());
+        let summary = Solver::new(&[1.0; 3], 1, 0).minimise(&mut tied, &Stopping::default());
         assert_eq!(summary.stop, Stop::Converged);
         assert!((Arm::points(&tied.angles)[1][1] - 1.1).abs() < 1e-8);
         assert!(summary.objective < 1e-8, "the goal is within one link of the tied joint");

@@ -173,7 +173,7 @@ impl Tracker {
             answer.status = FrameStatus::NoMarkers;
             if some_seen || self.targets.stand_without_markers() {
                 let tolerance = self.rules.tolerance;
-                let stopping = least_squares::Options { tolerance, ..Default::default() };
+                let stopping = least_squares::Stopping { tolerance, ..Default::default() };
                 let summary = solver.minimise(&mut frame, &stopping);
                 spent += summary.iterations;
                 answer.status = match summary.stop {

@@ -5,7 +5,7 @@
 //! model that came with the recording. One table is printed, in Markdown.
 
 use condyle::formats::Recording;
-use condyle::scaling::{self, Plan as Sizing};
+use condyle::scaling::{self, Assumptions as Sizing};
 use condyle::tracking::{Request, track};
 use condyle::{Model, open};
 use std::error::Error;

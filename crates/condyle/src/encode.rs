@@ -5,7 +5,7 @@ use crate::scene;
 use condyle_diagnostics::{Diagnostic, Error, Read};
 #[cfg(feature = "glb")]
 use condyle_formats::glb;
-use condyle_formats::{Format, Id, Kind, csv, sto, trc};
+use condyle_formats::{ContentKind, Format, Id, csv, sto, trc};
 #[cfg(feature = "glb")]
 use condyle_model::Mode;
 use condyle_model::Model;
@@ -64,7 +64,7 @@ pub fn table(format: &Format, table: &Table) -> Result<Vec<u8>, Error> {
     match format.id {
         Id::Mot | Id::Sto => sto::write(table).map(String::into_bytes),
         Id::Csv => csv::write(table).map(String::into_bytes),
-        _ => Err(not_written(format, Kind::Motion)),
+        _ => Err(not_written(format, ContentKind::Motion)),
     }
 }
 
@@ -76,11 +76,11 @@ pub fn recording(format: &Format, recording: &Recording, name: &str) -> Result<V
     match format.id {
         Id::Trc => trc::write(recording, name).map(String::into_bytes),
         Id::Csv => table(format, &recording.to_table()),
-        _ => Err(not_written(format, Kind::Recording)),
+        _ => Err(not_written(format, ContentKind::Recording)),
     }
 }
 
-fn not_written(format: &Format, kind: Kind) -> Error {
+fn not_written(format: &Format, kind: ContentKind) -> Error {
     let message = format!("{} is not written as .{}", kind.name(), format.name);
     Diagnostic::error("format/not-written", message)
         .with_help(format!("known are {}", Format::endings_that_write(kind)))

@@ -213,7 +213,7 @@
 //! type = "hinge"
 //! segment = "shank"
 //! axis = [0, 0, -1]
-//! coordinate.flexion = { range = [0, 140] }
+//! coordinate.angle = { range = [0, 140] }
 //! "#;
 //! let model = document::read(text, &mut |_| Err("alone".into()))?.value.model;
 //! let program = Program::compile(&model);
@@ -233,14 +233,14 @@
 //! [`scaling`] finds the lengths of a person from a recording in which that person stands still.
 //!
 //! ```
-//! use condyle::scaling::{Plan, fit};
+//! use condyle::scaling::{Assumptions, fit};
 //! use condyle::{LengthUnit, Mode, Motion, Observed, Recording, open};
 //! let model = open::model("knee".as_ref())?.value;
 //! // Markers as a person would have them whose leg is a tenth longer in every direction.
 //! let rest = Motion { times: vec![0.0], frames: vec![model.defaults()] };
 //! let mut trial = rest.virtual_markers(&model, Mode::Open)?;
 //! trial.positions.iter_mut().filter_map(Observed::position_mut).flatten().for_each(|x| *x *= 1.1);
-//! let scaled = fit(&model, &trial, &Plan::default())?;
+//! let scaled = fit(&model, &trial, &Assumptions::default())?;
 //! assert!((scaled.body.factor - 1.1).abs() < 0.03);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -279,7 +279,7 @@ pub use condyle_formats as formats;
 pub use condyle_math as math;
 pub use condyle_model::{
     self as model, Component, Coordinate, CoordinateId, CoordinateKind, Jacobian, Mode, Model,
-    ModelBuilder, Pose, Program, Range, SegmentId, Source,
+    ModelBuilder, Pose, Program, Range, SegmentId, Signal,
 };
 pub use condyle_motion::{
     self as motion, AngleUnit, LengthUnit, Motion, Observed, Posture, Recording, Table,

@@ -7,7 +7,7 @@ use condyle_formats::opensim::setup::{IkSetup, IkTasks};
 #[cfg(feature = "poses")]
 use condyle_formats::poses::Resolved;
 use condyle_formats::text::utf8;
-use condyle_formats::{Content, FORMATS, Format, Id, Kind};
+use condyle_formats::{Content, ContentKind, FORMATS, Format, Id};
 use condyle_model::Model;
 use condyle_motion::{Motion, Recording, Table};
 use std::fmt;
@@ -38,7 +38,7 @@ pub enum Cause {
     /// Neither its ending nor its content is of a format that can hold what was wanted.
     Format {
         /// What was wanted; `None` for anything that can be read.
-        wanted: Option<Kind>,
+        wanted: Option<ContentKind>,
     },
     /// It is no file, and a word that might be the name of a shipped model, but none has it.
     Unknown,
@@ -133,9 +133,9 @@ pub fn ending(path: &Path) -> String {
 /// # Errors
 /// [`OpenError`] with the path and everything that is wrong; [`Cause::Format`] if it is of no known
 /// format, or cannot hold what is `wanted`.
-pub fn content(path: &Path, wanted: Option<Kind>) -> Result<Read<Content>, OpenError> {
+pub fn content(path: &Path, wanted: Option<ContentKind>) -> Result<Read<Content>, OpenError> {
     #[cfg(feature = "document")]
-    if wanted.is_none_or(|kind| kind == Kind::Model)
+    if wanted.is_none_or(|kind| kind == ContentKind::Model)
         && let Some(name) = shipped::asked_for(path)
     {
         return Ok(shipped::read(name)?.map(Content::Document));
@@ -180,7 +180,7 @@ fn with_tasks(path: &Path, mut read: Read<Content>) -> Result<Read<Content>, Ope
     if let Content::Setup(setup) = &mut read.value
         && let IkTasks::File(name) = &setup.tasks
     {
-        let tasks = content(&beside(path, name), Some(Kind::Setup))?;
+        let tasks = content(&beside(path, name), Some(ContentKind::Setup))?;
         if let Content::Tasks(set) = tasks.value {
             read.warnings.extend(tasks.warnings);
             setup.tasks = IkTasks::Inline(set);
@@ -203,12 +203,12 @@ fn included(path: &Path) -> Result<String, String> {
 /// # Errors
 /// As [`content`].
 pub fn model(path: &Path) -> Result<Read<Model>, OpenError> {
-    let read = content(path, Some(Kind::Model))?;
+    let read = content(path, Some(ContentKind::Model))?;
     match read.value {
         Content::Model(value) => Ok(Read { value, warnings: read.warnings }),
         #[cfg(feature = "document")]
         Content::Document(document) => Ok(Read { value: document.model, warnings: read.warnings }),
-        _ => Err(failed(path, Cause::Format { wanted: Some(Kind::Model) })),
+        _ => Err(failed(path, Cause::Format { wanted: Some(ContentKind::Model) })),
     }
 }
 
@@ -217,10 +217,10 @@ pub fn model(path: &Path) -> Result<Read<Model>, OpenError> {
 /// # Errors
 /// As [`content`].
 pub fn recording(path: &Path) -> Result<Read<Recording>, OpenError> {
-    let read = content(path, Some(Kind::Recording))?;
+    let read = content(path, Some(ContentKind::Recording))?;
     match read.value {
         Content::Recording(value) => Ok(Read { value, warnings: read.warnings }),
-        _ => Err(failed(path, Cause::Format { wanted: Some(Kind::Recording) })),
+        _ => Err(failed(path, Cause::Format { wanted: Some(ContentKind::Recording) })),
     }
 }
 
@@ -229,10 +229,10 @@ pub fn recording(path: &Path) -> Result<Read<Recording>, OpenError> {
 /// # Errors
 /// As [`content`].
 pub fn table(path: &Path) -> Result<Read<Table>, OpenError> {
-    let read = content(path, Some(Kind::Motion))?;
+    let read = content(path, Some(ContentKind::Motion))?;
     match read.value {
         Content::Table(value) => Ok(Read { value, warnings: read.warnings }),
-        _ => Err(failed(path, Cause::Format { wanted: Some(Kind::Motion) })),
+        _ => Err(failed(path, Cause::Format { wanted: Some(ContentKind::Motion) })),
     }
 }
 
@@ -242,7 +242,7 @@ pub fn table(path: &Path) -> Result<Read<Table>, OpenError> {
 /// As [`content`].
 #[cfg(feature = "opensim")]
 pub fn setup(path: &Path) -> Result<Read<IkSetup>, OpenError> {
-    let read = content(path, Some(Kind::Setup))?;
+    let read = content(path, Some(ContentKind::Setup))?;
     match read.value {
         Content::Setup(value) => Ok(Read { value, warnings: read.warnings }),
         _ => {
@@ -269,8 +269,9 @@ pub fn motion(path: &Path, model: &Model) -> Result<Read<Motion>, OpenError> {
 /// As [`content`]; names that the model does not have.
 #[cfg(feature = "poses")]
 pub fn poses(path: &Path, model: &Model) -> Result<Read<Resolved>, OpenError> {
-    let Read { value: Content::Poses(poses), warnings } = content(path, Some(Kind::Poses))? else {
-        return Err(failed(path, Cause::Format { wanted: Some(Kind::Poses) }));
+    let Read { value: Content::Poses(poses), warnings } = content(path, Some(ContentKind::Poses))?
+    else {
+        return Err(failed(path, Cause::Format { wanted: Some(ContentKind::Poses) }));
     };
     let resolved = poses.resolve(model);
     let value = resolved.map_err(|error| failed(path, Cause::Content { error, text: None }))?;

@@ -50,9 +50,9 @@ const ROUNDS: usize = 8;
 /// Most steps in the factors.
 const ITERATIONS: usize = 20;
 
-/// How a model is scaled.
+/// What is assumed of markers and bones while a model is scaled.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plan {
+pub struct Assumptions {
     /// Leave markers where the scaled model has them.
     pub keep_markers: bool,
     /// How well a landmark is known, as a standard deviation in metres.
@@ -61,7 +61,7 @@ pub struct Plan {
     pub group_spread: f64,
 }
 
-impl Default for Plan {
+impl Default for Assumptions {
     fn default() -> Self {
         Self { keep_markers: false, marker_spread: 0.015, group_spread: 0.08 }
     }
@@ -176,7 +176,7 @@ impl std::error::Error for ScaleError {}
 /// [`ScaleError`] where fewer than three markers of the model are seen standing still.
 ///
 /// ```
-/// use condyle::scaling::{Plan, fit};
+/// use condyle::scaling::{Assumptions, fit};
 /// use condyle::{ModelBuilder, formats::{LengthUnit, Recording}, math::Vec3};
 ///
 /// let mut b = ModelBuilder::new("ruler");
@@ -193,10 +193,14 @@ impl std::error::Error for ScaleError {}
 ///     positions: [0.15, 0.3, 0.6].map(|x| [x, 0.0, 0.0].into()).to_vec(),
 ///     units: LengthUnit::Metre,
 /// };
-/// let scaled = fit(&model, &recording, &Plan::default()).unwrap();
+/// let scaled = fit(&model, &recording, &Assumptions::default()).unwrap();
 /// assert!((scaled.body.factor - 1.5).abs() < 1e-6);
 /// ```
-pub fn fit(model: &Model, recording: &Recording, plan: &Plan) -> Result<Scaled, ScaleError> {
+pub fn fit(
+    model: &Model,
+    recording: &Recording,
+    assumed: &Assumptions,
+) -> Result<Scaled, ScaleError> {
     let mut warnings = vec![];
     let standing = Standing::find(model, recording, &mut warnings)?;
     if model.size_groups().is_empty() {
@@ -208,7 +212,7 @@ pub fn fit(model: &Model, recording: &Recording, plan: &Plan) -> Result<Scaled, 
         let said = Diagnostic::warning("scale/custom", "laws of kind `custom` keep their lengths");
         warnings.push(said.with_help("nobody but their author knows which of their numbers are"));
     }
-    let mut search = Search::new(model, &standing, plan);
+    let mut search = Search::new(model, &standing, assumed);
     let before = search.first(&vec![0.0; search.len()]);
     let rms_before = before.answer.rms();
     // The body as a whole first: a posture found at the wrong size may be a wrong one.
@@ -228,7 +232,7 @@ pub fn fit(model: &Model, recording: &Recording, plan: &Plan) -> Result<Scaled, 
     }
     let spreads = search.spreads(&best);
     let scaled = search.model_at(&best.logs);
-    let (model_out, markers) = placed(&scaled, &standing, &best, plan, &mut warnings);
+    let (model_out, markers) = placed(&scaled, &standing, &best, assumed, &mut warnings);
     let lengths = lengths(model);
     let factor = |i: usize| Factor {
         name: i.checked_sub(1).map_or("body", |g| &model.size_groups()[g].name).to_owned(),
@@ -344,24 +348,24 @@ struct State {
 struct Search<'m> {
     model: &'m Model,
     standing: &'m Standing,
-    plan: &'m Plan,
+    assumed: &'m Assumptions,
     targets: Targets,
     /// For each segment the position of its factor's logarithm.
     of_segment: Vec<usize>,
 }
 
 impl<'m> Search<'m> {
-    fn new(model: &'m Model, standing: &'m Standing, plan: &'m Plan) -> Self {
+    fn new(model: &'m Model, standing: &'m Standing, assumed: &'m Assumptions) -> Self {
         let of_segment = factors_of_segments(model);
         let target = |&marker: &usize| MarkerTarget { marker, weight: 1.0 };
         let markers = standing.markers.iter().map(target).collect();
         let targets = Targets { markers, ..Targets::default() };
-        Self { model, standing, plan, targets, of_segment }
+        Self { model, standing, assumed, targets, of_segment }
     }
 
     /// Weighs the markers anew; answers whether that changes anything.
     fn weigh(&mut self, answer: &FrameAnswer) -> bool {
-        let bound = TRUSTED * self.plan.marker_spread;
+        let bound = TRUSTED * self.assumed.marker_spread;
         let mut change = 0.0f64;
         for (target, &error) in self.targets.markers.iter_mut().zip(&answer.marker_errors) {
             let weight = if error > bound { (bound / error).powi(2) } else { 1.0 };
@@ -403,10 +407,10 @@ impl<'m> Search<'m> {
             let marker = &tracker.model().markers()[target.marker];
             let at = marker.segment.map_or(marker.point, |id| pose.segment(id) * marker.point);
             let off = at - place.map_or(at, Vec3::from);
-            let scale = target.weight.sqrt() / self.plan.marker_spread;
+            let scale = target.weight.sqrt() / self.assumed.marker_spread;
             residuals.extend(off.to_array().map(|x| x * scale));
         }
-        let groups = logs[1..].iter().map(|log| (log - logs[0]) / self.plan.group_spread);
+        let groups = logs[1..].iter().map(|log| (log - logs[0]) / self.assumed.group_spread);
         residuals.extend(groups);
         let cost = residuals.iter().map(|r| r * r).sum();
         State { logs: logs.to_vec(), answer, residuals, cost }
@@ -544,7 +548,7 @@ fn placed(
     scaled: &Model,
     standing: &Standing,
     best: &State,
-    plan: &Plan,
+    assumed: &Assumptions,
     warnings: &mut Vec<Diagnostic>,
 ) -> (Model, Vec<MarkerFit>) {
     let program = condyle_model::Program::compile(scaled);
@@ -556,7 +560,7 @@ fn placed(
     for ((&index, place), &error) in seen {
         let marker = &scaled.markers()[index];
         let mut moved = 0.0;
-        if !plan.keep_markers
+        if !assumed.keep_markers
             && let (Some(id), Some(place)) = (marker.segment, place)
         {
             let segment = pose.segment(id);

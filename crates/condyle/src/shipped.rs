@@ -76,9 +76,9 @@ pub fn standalone(name: &str) -> Result<String, OpenError> {
     let mut parts = vec![];
     let document = with(name, &mut |file| parts.push(file.to_owned()))?.value;
     if parts.is_empty() {
-        return Ok(document.source);
+        return Ok(document.text);
     }
-    let head = document.source.lines().take_while(|line| line.starts_with('#'));
+    let head = document.text.lines().take_while(|line| line.starts_with('#'));
     let head: String = head.map(|line| format!("{line}\n")).collect();
     let (parts, model) = (parts.join(", "), document::write(&document.model));
     Ok(format!("{head}#\n# Written out with {parts}, in metres and radians.\n{model}"))

@@ -3,7 +3,7 @@
 use condyle::Observed;
 use condyle::formats::{LengthUnit, Recording, document};
 use condyle::math::{Mat3, Vec3};
-use condyle::scaling::{Factor, Plan, ScaleError, Scaled, fit};
+use condyle::scaling::{Assumptions, Factor, ScaleError, Scaled, fit};
 use condyle::{
     CoordinateId, CoordinateKind, Mode, Model, ModelBuilder, Pose, Program, SegmentId, open,
 };
@@ -157,8 +157,8 @@ fn exact_markers_give_the_factors_back() {
     let (model, person, stored) = person();
     let trial = recording(&person, &stored, 1, || 0.0);
     // So weak a prior moves nothing: it pulls by 1/100² where the markers pull by 1/0.015².
-    let plan = Plan { group_spread: 100.0, ..Plan::default() };
-    let scaled = fit(&model, &trial, &plan).expect("a person");
+    let assumed = Assumptions { group_spread: 100.0, ..Assumptions::default() };
+    let scaled = fit(&model, &trial, &assumed).expect("a person");
     for (found, truth) in scaled.groups.iter().zip(TRUTH) {
         assert!((found.factor / truth - 1.0).abs() < 1e-4, "{found:?} {truth}");
     }
@@ -191,8 +191,9 @@ fn noise_moves_the_factors_as_far_as_the_spread_says() {
         let trial = recording(&person, &stored, frames, || sigma * dice.normal());
         // A median of n normal numbers has the standard deviation √(π/2n)·σ.
         let spread = sigma * (std::f64::consts::FRAC_PI_2 / frames as f64).sqrt();
-        let plan = Plan { marker_spread: spread, group_spread: 100.0, keep_markers: true };
-        let scaled = fit(&model, &trial, &plan).expect("a person");
+        let assumed =
+            Assumptions { marker_spread: spread, group_spread: 100.0, keep_markers: true };
+        let scaled = fit(&model, &trial, &assumed).expect("a person");
         for (Factor { name, factor, spread, .. }, truth) in scaled.groups.iter().zip(TRUTH) {
             let off = (factor / truth).ln();
             // Four times in 15000 beyond 4 standard deviations.
@@ -225,8 +226,8 @@ fn rods() -> (Model, Recording) {
 #[test]
 fn groups_are_drawn_to_the_body_as_far_as_the_spreads_say() {
     let (model, trial) = rods();
-    let plan = Plan::default();
-    let scaled = fit(&model, &trial, &plan).expect("rods");
+    let assumed = Assumptions::default();
+    let scaled = fit(&model, &trial, &assumed).expect("rods");
     // A slow twin: the cost as a sum, lowered along one logarithm after the other.
     let squares: f64 = [0.1f64, 0.25, 0.4].iter().map(|x| x * x).sum();
     let cost = |x: &[f64; 4]| {
@@ -267,8 +268,8 @@ fn a_marker_that_means_something_else_counts_less() {
     let (model, mut trial) = rods();
     // The marker at 0.25 of the first rod was stuck on 0.3 m too far out.
     trial.positions[1] = [1.2 * 0.25 + 0.3, 0.0, 0.0].into();
-    let plan = Plan { group_spread: 100.0, ..Plan::default() };
-    let scaled = fit(&model, &trial, &plan).expect("rods");
+    let assumed = Assumptions { group_spread: 100.0, ..Assumptions::default() };
+    let scaled = fit(&model, &trial, &assumed).expect("rods");
     // Least squares in closed form, with weights (30 mm/e)^2 beyond 30 mm that are found by turns.
     let (along, seen) = ([0.1f64, 0.25, 0.4], [0.12f64, 0.6, 0.48]);
     let weighed = |weights: [f64; 3]| {
@@ -305,8 +306,8 @@ fn markers_that_move_are_left_out() {
     trial.positions[1] = [3.0, 3.0, 3.0].into();
     trial.positions[one.len() + 2] = Observed::MISSING;
     // So weak a prior pulls by a hundred-millionth of what the markers do.
-    let plan = Plan { group_spread: 100.0, ..Plan::default() };
-    let scaled = fit(&model, &trial, &plan).expect("rods");
+    let assumed = Assumptions { group_spread: 100.0, ..Assumptions::default() };
+    let scaled = fit(&model, &trial, &assumed).expect("rods");
     assert_eq!(scaled.unused, ["a0"]);
     let said: Vec<&str> = scaled.warnings.iter().map(|w| w.message.as_str()).collect();
     assert_eq!(said, ["marker `a0` moves by 30 mm"]);
@@ -319,16 +320,16 @@ fn what_cannot_be_scaled_is_refused() {
     let mut few = trial.clone();
     few.labels = ["a0", "a1", "x", "y", "z", "w"].map(str::to_owned).to_vec();
     let ScaleError::TooFewMarkers { usable, moving, .. } =
-        fit(&model, &few, &Plan::default()).expect_err("two markers")
+        fit(&model, &few, &Assumptions::default()).expect_err("two markers")
     else {
         panic!("another error")
     };
     assert_eq!((usable, moving), (vec!["a0".to_owned(), "a1".to_owned()], vec![]));
     few.labels = ["p", "q", "x", "y", "z", "w"].map(str::to_owned).to_vec();
-    let said = fit(&model, &few, &Plan::default()).expect_err("strangers").to_string();
+    let said = fit(&model, &few, &Assumptions::default()).expect_err("strangers").to_string();
     assert!(said.starts_with("model and recording share no marker"), "{said}");
     let bare = ModelBuilder::new("bare").build().expect("nothing");
-    let said = fit(&bare, &trial, &Plan::default()).expect_err("no markers").to_string();
+    let said = fit(&bare, &trial, &Assumptions::default()).expect_err("no markers").to_string();
     assert!(said.starts_with("the model has no markers"), "{said}");
 }
 
@@ -341,7 +342,7 @@ fn a_wrong_unit_ends_at_a_bound_and_is_said() {
         .filter_map(Observed::position_mut)
         .flatten()
         .for_each(|x| *x *= 1000.0);
-    let scaled = fit(&model, &trial, &Plan::default()).expect("rods");
+    let scaled = fit(&model, &trial, &Assumptions::default()).expect("rods");
     assert!((scaled.body.factor - 2.0).abs() < 1e-9, "{:?}", scaled.body);
     assert!(scaled.warnings.iter().any(|w| w.code == "scale/bound"), "{:?}", scaled.warnings);
 }

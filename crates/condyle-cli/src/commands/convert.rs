@@ -6,7 +6,7 @@ use crate::motion_format as format;
 use crate::output;
 use clap::{Args, ValueEnum};
 use condyle::formats::document::{self, Document};
-use condyle::formats::{Content, Format, Id, Kind, trc};
+use condyle::formats::{Content, ContentKind, Format, Id, trc};
 use condyle::open::Cause;
 use condyle::{AngleUnit, Mode, Model, Motion, Program, Table, encode, open, shipped};
 use std::path::{Path, PathBuf};
@@ -39,7 +39,8 @@ enum Limits {
 }
 
 /// What can be written.
-const WRITTEN: [Kind; 4] = [Kind::Motion, Kind::Scene, Kind::Recording, Kind::Model];
+const WRITTEN: [ContentKind; 4] =
+    [ContentKind::Motion, ContentKind::Scene, ContentKind::Recording, ContentKind::Model];
 
 /// The combinations that exist, for the message about one that does not.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
@@ -72,7 +73,7 @@ impl Convert {
             {
                 self.scene(&model, &Motion::default())?
             }
-            Content::Recording(recording) if target.writes.contains(&Kind::Recording) => {
+            Content::Recording(recording) if target.writes.contains(&ContentKind::Recording) => {
                 let name = self.output.file_name().unwrap_or_default().to_string_lossy();
                 encode::recording(target, &recording, &name)?
             }
@@ -124,7 +125,7 @@ impl Convert {
     fn document(&self, document: Document) -> Result<String, Failure> {
         match shipped::asked_for(&self.input) {
             Some(name) => Ok(shipped::standalone(name)?),
-            None => Ok(document.source),
+            None => Ok(document.text),
         }
     }
 
@@ -137,7 +138,7 @@ impl Convert {
         let poses = table.is_none();
         let Some(model_path) = &self.model else {
             let what = format!("{}: without --model", self.input.display());
-            let Some(table) = table.filter(|_| target.writes.contains(&Kind::Motion)) else {
+            let Some(table) = table.filter(|_| target.writes.contains(&ContentKind::Motion)) else {
                 let from = if poses { "poses" } else { "a motion" };
                 let to = target.name;
                 return Err(Failure::new(format!("{what} {from} cannot become .{to} ({KNOWN})")));

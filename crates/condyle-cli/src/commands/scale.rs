@@ -6,7 +6,7 @@ use crate::output;
 use clap::Args;
 use condyle::formats::document;
 use condyle::open;
-use condyle::scaling::{Factor, MarkerFit, Plan, Scaled, fit};
+use condyle::scaling::{Assumptions, Factor, MarkerFit, Scaled, fit};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -57,8 +57,8 @@ impl Scale {
         }
         let model = warned(&self.model, open::model(&self.model)?);
         let recording = warned(&self.trial, open::recording(&self.trial)?);
-        let plan = Plan { keep_markers: self.keep_markers, ..Plan::default() };
-        let scaled = fit(&model, &recording, &plan)
+        let assumed = Assumptions { keep_markers: self.keep_markers, ..Assumptions::default() };
+        let scaled = fit(&model, &recording, &assumed)
             .map_err(|error| Failure::new(format!("{}: {error}", self.trial.display())))?;
         warn_about(&self.trial, &scaled.warnings);
         let subject = match self.output.file_stem() {
@@ -69,7 +69,7 @@ impl Scale {
         if self.json {
             output::print_json(&self.report(&scaled))?;
         } else if !to_screen {
-            output::print(table(&scaled, plan.keep_markers).as_bytes())?;
+            output::print(table(&scaled, assumed.keep_markers).as_bytes())?;
         }
         Ok(if scaled.status.is_solved() { Outcome::Done } else { Outcome::DoesNotHold })
     }

@@ -20,7 +20,7 @@
 //! - Header keys are found by name; `OrigDataRate` and its friends may be missing. `NumFrames`
 //!   and `NumMarkers` are often wrong: the rows and the labels rule, with a warning.
 //! - A marker with a blank, NaN or infinite coordinate was not seen. `0 0 0` is a place like any
-//!   other unless [`Options::zero_is_missing`] says otherwise.
+//!   other unless [`Dialect::zero_is_missing`] says otherwise.
 //! - A row that ends early leaves its last markers unseen, with a warning. Whole markers beyond
 //!   the last name are skipped, with a warning, if the first row has them too; any other cell too
 //!   many is an error.
@@ -32,5 +32,5 @@ mod header;
 mod read;
 mod write;
 
-pub use read::{Options, from_bytes, read, read_with};
+pub use read::{Dialect, from_bytes, read, read_with};
 pub use write::write;

@@ -7,7 +7,7 @@ use condyle_motion::{LengthUnit, Observed, Recording};
 
 /// Choices that a TRC file itself cannot make.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Options {
+pub struct Dialect {
     /// Whether a marker at exactly `0 0 0` was not seen.
     pub zero_is_missing: bool,
 }
@@ -36,7 +36,7 @@ pub struct Options {
 /// # Ok::<(), condyle_formats::Error>(())
 /// ```
 pub fn read(text: &str) -> Result<Read<Recording>, Error> {
-    read_with(text, Options::default())
+    read_with(text, Dialect::default())
 }
 
 /// Reads a recording from bytes in UTF-8, UTF-16 or, as a last resort, Latin-1.
@@ -53,7 +53,7 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Read<Recording>, Error> {
 /// # Errors
 ///
 /// As [`read`].
-pub fn read_with(text: &str, options: Options) -> Result<Read<Recording>, Error> {
+pub fn read_with(text: &str, options: Dialect) -> Result<Read<Recording>, Error> {
     check_size(text.len())?;
     let mut warnings = Warnings::default();
     let mut lines = lines(text).peekable();
@@ -100,7 +100,7 @@ pub fn read_with(text: &str, options: Options) -> Result<Read<Recording>, Error>
 /// The rows read so far, in the unit of the file.
 struct Rows<'h> {
     header: &'h Header,
-    options: Options,
+    options: Dialect,
     /// How many positions the size of the text allows for.
     room: usize,
     /// Cells of markers without a name, after all others; found in the first row.

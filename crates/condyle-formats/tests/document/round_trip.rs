@@ -138,7 +138,7 @@ fn odd_names_and_every_closure_are_kept() {
 fn a_document_is_saved_as_it_was_written() {
     let text = "# mine\ncondyle = 1\nkind = \"model\"\n\n[segment.a]   # one bone\n";
     let document = super::try_read(text).unwrap().value;
-    assert_eq!(document.source, text);
+    assert_eq!(document.text, text);
     let expanded = document::Document::of(document.model.clone());
-    assert_eq!(read(&expanded.source), document.model);
+    assert_eq!(read(&expanded.text), document.model);
 }

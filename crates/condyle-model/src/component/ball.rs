@@ -3,11 +3,11 @@
 //! The coordinate stores four numbers and has three tangents: with the retraction q ⊕ δ = q·exp(δ)
 //! the generators are rotations about the axes of the child, R·x, R·y and R·z.
 
-use super::Source;
+use super::Signal;
 
 /// A ball joint, without singularities.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ball {
     /// An orientation coordinate.
-    pub orientation: Source,
+    pub orientation: Signal,
 }

@@ -21,7 +21,7 @@
 //! Kinks: in posed mode at the boundary. The derivative of moved angles is taken as 0; solvers use
 //! open mode.
 
-use super::Source;
+use super::Signal;
 use crate::limit::Cone;
 use condyle_math::{Mat3, Quat, Scalar, Vec3};
 use std::f64::consts::TAU;
@@ -40,11 +40,11 @@ pub struct JointCone {
 pub enum Swinging {
     /// Three angles in radians and their axes, in the order of the product; axes are normalised
     /// when the model is built.
-    Angles([Source; 3], [Vec3; 3]),
+    Angles([Signal; 3], [Vec3; 3]),
     /// Two angles in radians and their axes: the bone only swings.
-    Directions([Source; 2], [Vec3; 2]),
+    Directions([Signal; 2], [Vec3; 2]),
     /// A unit quaternion.
-    Orientation(Source),
+    Orientation(Signal),
 }
 
 /// One limit row of a cone: its value, and its derivative along each angle or tangent.
@@ -219,8 +219,8 @@ mod tests {
         Cone::new(-Vec3::Y, twist, points.collect(), 0, Projection::Nearest).unwrap()
     }
 
-    fn source(i: u32) -> Source {
-        Source::Coordinate(CoordinateId(i))
+    fn source(i: u32) -> Signal {
+        Signal::Coordinate(CoordinateId(i))
     }
 
     #[test]

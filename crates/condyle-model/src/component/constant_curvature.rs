@@ -11,7 +11,7 @@
 //! For s below 0.001 or above 0.999 a straight rod p = L·t is used instead, for agreement with
 //! OpenSim. The discontinuity at s = 0.999 is that of OpenSim.
 
-use super::{Law, Source};
+use super::{Law, Signal};
 use condyle_math::{Affine, Mat3, Scalar, Vec3};
 use std::f64::consts::FRAC_PI_2;
 
@@ -19,7 +19,7 @@ use std::f64::consts::FRAC_PI_2;
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConstantCurvature {
     /// Angles about x, z and y, in this order, in radians.
-    pub angles: [Source; 3],
+    pub angles: [Signal; 3],
     /// Neutral angles in radians, added to the angles.
     pub neutral: [f64; 3],
     /// Length of the arc in metres.

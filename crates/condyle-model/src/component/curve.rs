@@ -14,7 +14,7 @@
 //! c′ = 0 or where the tangent is along `up`: there R is built on an arbitrary perpendicular
 //! direction. `condyle check` finds such curves. Generator: by dual numbers.
 
-use super::{Law, Source};
+use super::{Law, Signal};
 use condyle_math::function::SimmSpline;
 use condyle_math::{Affine, Mat3, Scalar, Vec3};
 
@@ -22,7 +22,7 @@ use condyle_math::{Affine, Mat3, Scalar, Vec3};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     /// The parameter of the curve.
-    pub parameter: Source,
+    pub parameter: Signal,
     /// The curve: splines of the parameter for x, y and z, in metres.
     pub path: Box<[SimmSpline; 3]>,
     /// The axes that follow the curve; `None` for a pure translation.
@@ -119,7 +119,7 @@ mod tests {
         };
         let path =
             [spline(&|u| 2.0 * u.sin()), spline(&|_| 0.0), spline(&|u| 2.0 * (u.cos() - 1.0))];
-        let parameter = Source::Coordinate(CoordinateId(0));
+        let parameter = Signal::Coordinate(CoordinateId(0));
         Curve { parameter, path: Box::new(path), heading }
     }
 

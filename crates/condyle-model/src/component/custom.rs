@@ -3,7 +3,7 @@
 //! The law is one generic function, which posing, derivatives and tracking evaluate. Files store
 //! its name and its parameters.
 
-use super::{Law, Source};
+use super::{Law, Signal};
 use condyle_math::{Affine, Dual, Mat3, Scalar, Vec3};
 use std::any::TypeId;
 use std::collections::BTreeMap;
@@ -52,7 +52,7 @@ pub struct Custom {
     /// The parameters of the law.
     pub parameters: Parameters,
     /// The sources of its inputs, in the law's order; at most [`MOST_LAW_INPUTS`].
-    pub inputs: Vec<Source>,
+    pub inputs: Vec<Signal>,
     motion: Arc<dyn ErasedLaw>,
 }
 
@@ -170,7 +170,7 @@ impl Registry {
         &self,
         name: &str,
         parameters: Parameters,
-        inputs: Vec<Source>,
+        inputs: Vec<Signal>,
     ) -> Result<Custom, String> {
         let Some((_, make)) = self.laws.get(name) else {
             let known: Vec<&str> = self.names().collect();

@@ -12,7 +12,7 @@
 //! precedence. In open mode it passes unchanged, and the bounds are limit rows x - lower(d) ≥ 0 and
 //! upper(d) - x ≥ 0 for a solver. Kinks: in posed mode, where a bound becomes active.
 
-use super::Source;
+use super::Signal;
 use condyle_math::function::Function;
 
 /// A passive angle whose bounds are functions of a driver: for example the elevation of the
@@ -20,9 +20,9 @@ use condyle_math::function::Function;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Depend {
     /// The bounded angle.
-    pub passive: Source,
+    pub passive: Signal,
     /// The argument of the bounds.
-    pub driver: Source,
+    pub driver: Signal,
     /// Smallest value of the passive angle, as a function of the driver.
     pub lower: Option<Function>,
     /// Largest value of the passive angle, as a function of the driver.

@@ -10,14 +10,14 @@
 //! the frame is not the surface normal: with half axes of 7, 15 and 7 cm the two differ by up to
 //! 21.3 degrees. No kinks. Generator: by dual numbers.
 
-use super::{Law, Source};
+use super::{Law, Signal};
 use condyle_math::{Affine, Mat3, Scalar, Vec3};
 
 /// Gliding on an ellipsoid with rotation, like the scapula on the ribs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ellipsoid {
     /// Body-fixed angles about x, y, z in radians.
-    pub angles: [Source; 3],
+    pub angles: [Signal; 3],
     /// Half axes in metres.
     pub radii: Vec3,
     /// The meaning of the frame's z axis.

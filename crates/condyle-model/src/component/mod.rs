@@ -72,9 +72,10 @@ pub use translate::Translate;
 use crate::position::{ComponentId, CoordinateId};
 use condyle_math::{Affine, Scalar};
 
-/// The source of an input of a component, or of the motion of a segment.
+/// What flows into a port of a component, or moves a segment: the value of a coordinate or an output
+/// of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Source {
+pub enum Signal {
     /// The requested value of a coordinate, of any joint set; in posed mode clamped to its range.
     /// If a limit component acts on the coordinate, the limited value is that component's output.
     Coordinate(CoordinateId),
@@ -82,7 +83,7 @@ pub enum Source {
     Output(ComponentId, u32),
 }
 
-impl From<CoordinateId> for Source {
+impl From<CoordinateId> for Signal {
     fn from(id: CoordinateId) -> Self {
         Self::Coordinate(id)
     }
@@ -169,9 +170,9 @@ impl Component {
     ///
     /// A [`Compensate`] refers to segments and has no ports, and a [`Contact`] also reads the
     /// motions on the path to its surface: [`Model::reads`](crate::Model::reads) includes them.
-    pub fn inputs(&self) -> Vec<(&'static str, PortType, Source)> {
+    pub fn inputs(&self) -> Vec<(&'static str, PortType, Signal)> {
         use PortType::{Orientation, Scalar, Transform};
-        let three = |names: [&'static str; 3], sources: [Source; 3]| {
+        let three = |names: [&'static str; 3], sources: [Signal; 3]| {
             names.into_iter().zip(sources).map(|(name, s)| (name, Scalar, s)).collect()
         };
         match self {

@@ -25,7 +25,7 @@
 //! order h. Generator: the rotation (a, c × a) about the centre. Kinks: at the ends of intervals
 //! the centre, and with it the derivative, is discontinuous.
 
-use super::{Law, Source};
+use super::{Law, Signal};
 use condyle_math::function::SimmSpline;
 use condyle_math::{Affine, Mat3, Scalar, Vec3};
 
@@ -33,7 +33,7 @@ use condyle_math::{Affine, Mat3, Scalar, Vec3};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pivot {
     /// The angle in radians.
-    pub angle: Source,
+    pub angle: Signal,
     axis: Vec3,
     centre: Centre,
     /// The upper ends of the pieces, increasing; the last piece has none.
@@ -96,7 +96,7 @@ impl Pivot {
     /// # Errors
     /// [`PivotError`] for an axis of length 0, no centre, numbers that are not finite, or intervals
     /// that are not increasing.
-    pub fn new(angle: Source, axis: Vec3, centre: Centre) -> Result<Self, PivotError> {
+    pub fn new(angle: Signal, axis: Vec3, centre: Centre) -> Result<Self, PivotError> {
         let length = axis.norm();
         if !(length.is_finite() && length > 1e-9) {
             return Err(PivotError::Axis);
@@ -280,7 +280,7 @@ mod tests {
     use crate::position::CoordinateId;
 
     fn pivot(centre: Centre) -> Pivot {
-        Pivot::new(Source::Coordinate(CoordinateId(0)), Vec3::Z * 2.0, centre).unwrap()
+        Pivot::new(Signal::Coordinate(CoordinateId(0)), Vec3::Z * 2.0, centre).unwrap()
     }
 
     fn about(centre: Vec3, degrees: f64) -> Affine {
@@ -365,7 +365,7 @@ mod tests {
 
     #[test]
     fn what_cannot_pivot_is_refused() {
-        let source = Source::Coordinate(CoordinateId(0));
+        let source = Signal::Coordinate(CoordinateId(0));
         let make = |axis, list| Pivot::new(source, axis, Centre::Intervals(list)).unwrap_err();
         assert_eq!(make(Vec3::ZERO, vec![(1.0, Vec3::X)]), PivotError::Axis);
         assert_eq!(make(Vec3::X, vec![]), PivotError::NoCentre);

@@ -3,11 +3,11 @@
 //! The first factor is nearest to the parent. Generators: those of each factor, transformed by the
 //! product of the factors before it.
 
-use super::Source;
+use super::Signal;
 
 /// A product of motions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Product {
     /// The factors, the one nearest to the parent first.
-    pub factors: Vec<Source>,
+    pub factors: Vec<Signal>,
 }

@@ -11,7 +11,7 @@
 //! mirrored; these are the only kinks. Generator: M′·M⁻¹, which is not rigid. Normals are
 //! transformed by the inverse transpose M⁻ᵀ, which is M at 1/s.
 
-use super::Source;
+use super::Signal;
 use condyle_math::{Mat3, Scalar, Vec3};
 
 /// The smallest factor; smaller ones are clamped.
@@ -23,7 +23,7 @@ const MOST: f64 = 1e6;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
     /// The factor, dimensionless; 1 is the identity.
-    pub factor: Source,
+    pub factor: Signal,
     /// The directions that are scaled.
     pub along: Along,
 }

@@ -5,14 +5,14 @@
 //! transpose, which transforms normals, is I - s·n·aᵀ. Generator: a·nᵀ, which is not rigid. Kinks:
 //! amounts are clamped to ±10⁶.
 
-use super::Source;
+use super::Signal;
 use condyle_math::{Mat3, Scalar, Vec3};
 
 /// A shear by one amount.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shear {
     /// The displacement per unit of distance from the plane, dimensionless; 0 is the identity.
-    pub amount: Source,
+    pub amount: Signal,
     /// The direction a of the displacement; it is normalised when the model is built.
     pub along: Vec3,
     /// The normal n of the plane, perpendicular to `along`; normalised as well.

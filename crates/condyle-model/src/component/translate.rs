@@ -2,14 +2,14 @@
 //!
 //! Generator: (0, a).
 
-use super::Source;
+use super::Signal;
 use condyle_math::Vec3;
 
 /// A slider: translation by one distance along one axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Translate {
     /// The distance in metres.
-    pub distance: Source,
+    pub distance: Signal,
     /// The axis; it is normalised when the model is built.
     pub axis: Vec3,
 }

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::component::{
     Ball, Combine, Compensate, Component, ConstantCurvature, Depend, Ellipsoid, Map, Pivot, Place,
-    Product, Rotate, Source, SurfaceAxis, Translate,
+    Product, Rotate, Signal, SurfaceAxis, Translate,
 };
 use crate::limit::Range;
 use condyle_diagnostics::{Error, Read, Severity};
@@ -135,13 +135,13 @@ impl ModelBuilder {
     }
 
     /// A component; its first output is returned.
-    pub fn component(&mut self, set: JointSetId, name: &str, component: Component) -> Source {
+    pub fn component(&mut self, set: JointSetId, name: &str, component: Component) -> Signal {
         self.model.components.push(NamedComponent {
             name: name.to_owned(),
             joint_set: set,
             component,
         });
-        Source::Output(ComponentId(self.model.components.len() as u32 - 1), 0)
+        Signal::Output(ComponentId(self.model.components.len() as u32 - 1), 0)
     }
 
     /// A component that was made before, to be changed in place: for networks whose components are
@@ -155,9 +155,9 @@ impl ModelBuilder {
         &mut self,
         set: JointSetId,
         name: &str,
-        input: impl Into<Source>,
+        input: impl Into<Signal>,
         function: Function,
-    ) -> Source {
+    ) -> Signal {
         let map = Map { input: input.into(), functions: vec![function] };
         self.component(set, name, Component::Map(map))
     }
@@ -167,14 +167,14 @@ impl ModelBuilder {
         &mut self,
         set: JointSetId,
         name: &str,
-        inputs: Vec<Source>,
+        inputs: Vec<Signal>,
         function: FunctionOfSeveral,
-    ) -> Source {
+    ) -> Signal {
         self.component(set, name, Component::Combine(Combine { inputs, function }))
     }
 
     /// A scalar held between bounds that another sets.
-    pub fn depend(&mut self, set: JointSetId, name: &str, depend: Depend) -> Source {
+    pub fn depend(&mut self, set: JointSetId, name: &str, depend: Depend) -> Signal {
         self.component(set, name, Component::Depend(depend))
     }
 
@@ -183,14 +183,14 @@ impl ModelBuilder {
         &mut self,
         set: JointSetId,
         name: &str,
-        angle: impl Into<Source>,
+        angle: impl Into<Signal>,
         axis: Vec3,
-    ) -> Source {
+    ) -> Signal {
         self.component(set, name, Component::Rotate(Rotate { angle: angle.into(), axis }))
     }
 
     /// A rotation about an axis whose centre moves.
-    pub fn pivot(&mut self, set: JointSetId, name: &str, pivot: Pivot) -> Source {
+    pub fn pivot(&mut self, set: JointSetId, name: &str, pivot: Pivot) -> Signal {
         self.component(set, name, Component::Pivot(pivot))
     }
 
@@ -199,21 +199,21 @@ impl ModelBuilder {
         &mut self,
         set: JointSetId,
         name: &str,
-        distance: impl Into<Source>,
+        distance: impl Into<Signal>,
         axis: Vec3,
-    ) -> Source {
+    ) -> Signal {
         let translate = Translate { distance: distance.into(), axis };
         self.component(set, name, Component::Translate(translate))
     }
 
     /// A rotation by an orientation coordinate.
-    pub fn ball(&mut self, set: JointSetId, name: &str, orientation: CoordinateId) -> Source {
+    pub fn ball(&mut self, set: JointSetId, name: &str, orientation: CoordinateId) -> Signal {
         let ball = Ball { orientation: orientation.into() };
         self.component(set, name, Component::Ball(ball))
     }
 
     /// A fixed transform.
-    pub fn place(&mut self, set: JointSetId, name: &str, child_in_parent: Affine) -> Source {
+    pub fn place(&mut self, set: JointSetId, name: &str, child_in_parent: Affine) -> Signal {
         self.component(set, name, Component::Place(Place { child_in_parent }))
     }
 
@@ -222,9 +222,9 @@ impl ModelBuilder {
         &mut self,
         set: JointSetId,
         name: &str,
-        angles: [Source; 3],
+        angles: [Signal; 3],
         radii: Vec3,
-    ) -> Source {
+    ) -> Signal {
         let axis = SurfaceAxis::OpenSim;
         self.component(set, name, Component::Ellipsoid(Ellipsoid { angles, radii, axis }))
     }
@@ -235,27 +235,27 @@ impl ModelBuilder {
         set: JointSetId,
         name: &str,
         column: ConstantCurvature,
-    ) -> Source {
+    ) -> Signal {
         self.component(set, name, Component::ConstantCurvature(column))
     }
 
     /// The rotation that undoes what ancestors did, for the joint of a segment.
-    pub fn compensate(&mut self, set: JointSetId, name: &str, compensate: Compensate) -> Source {
+    pub fn compensate(&mut self, set: JointSetId, name: &str, compensate: Compensate) -> Signal {
         self.component(set, name, Component::Compensate(compensate))
     }
 
     /// A product of transforms, the factor nearest to the parent first.
-    pub fn product(&mut self, set: JointSetId, name: &str, factors: Vec<Source>) -> Source {
+    pub fn product(&mut self, set: JointSetId, name: &str, factors: Vec<Signal>) -> Signal {
         self.component(set, name, Component::Product(Product { factors }))
     }
 
     /// Makes a coordinate follow a scalar instead of what is asked for it.
-    pub fn follow(&mut self, coordinate: CoordinateId, leader: Source) {
+    pub fn follow(&mut self, coordinate: CoordinateId, leader: Signal) {
         self.model.coordinates[coordinate.index()].follows = Some(leader);
     }
 
     /// Lets a transform of a joint set move a segment.
-    pub fn output(&mut self, set: JointSetId, segment: SegmentId, motion: Source) {
+    pub fn output(&mut self, set: JointSetId, segment: SegmentId, motion: Signal) {
         let segment = &mut self.model.segments[segment.index()];
         segment.motion = Some(motion);
         segment.joint_set = Some(set);

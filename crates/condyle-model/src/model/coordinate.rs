@@ -1,7 +1,7 @@
 //! Coordinates: the few numbers that a person gives.
 
 use super::JointSetId;
-use crate::component::Source;
+use crate::component::Signal;
 use crate::limit::Range;
 
 /// What a coordinate measures.
@@ -67,7 +67,7 @@ pub struct Coordinate {
     /// Whether tracking keeps it at its default.
     pub locked: bool,
     /// What determines it, if it is coupled to others; requests for it are then ignored.
-    pub follows: Option<Source>,
+    pub follows: Option<Signal>,
     /// Where its numbers come from.
     pub source: Option<String>,
 }

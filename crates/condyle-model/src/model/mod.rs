@@ -22,7 +22,7 @@ pub(crate) use check::{Node, dependency_order};
 
 pub use crate::position::{ComponentId, CoordinateId, JointSetId, SegmentId};
 
-use crate::component::{Compensate, Component, Source};
+use crate::component::{Compensate, Component, Signal};
 use condyle_diagnostics::{Error, Subject, nearest};
 use condyle_math::{Quat, Vec3};
 use std::collections::HashMap;
@@ -260,7 +260,7 @@ impl Model {
     }
 
     /// Everything that a component reads: its ports, and the motions that a compensation undoes.
-    pub fn reads(&self, id: ComponentId) -> Vec<Source> {
+    pub fn reads(&self, id: ComponentId) -> Vec<Signal> {
         match &self.components[id.index()].component {
             Component::Compensate(c) => self
                 .compensated_path(c)

@@ -23,7 +23,7 @@
 //! rests 4 cm above a joint rests higher above a larger one.
 
 use super::{Condition, CoordinateKind, Model, NamedComponent, SegmentId};
-use crate::component::{Centre, Component, ContactPair, Gliding, Pivot, Source};
+use crate::component::{Centre, Component, ContactPair, Gliding, Pivot, Signal};
 use condyle_diagnostics::{Diagnostic, Subject};
 use condyle_math::function::{
     Curve, Function, FunctionOfSeveral, MultivariatePolynomial, PiecewiseLinear, Polynomial,
@@ -130,16 +130,16 @@ impl Model {
     fn joints_of_components(&self) -> Vec<Option<Option<SegmentId>>> {
         let mut found = vec![None; self.components.len()];
         for segment in &self.segments {
-            let mut open: Vec<Source> = segment.motion.into_iter().collect();
+            let mut open: Vec<Signal> = segment.motion.into_iter().collect();
             while let Some(source) = open.pop() {
                 match source {
-                    Source::Coordinate(id) => open.extend(self.coordinate(id).follows),
-                    Source::Output(id, _) if found[id.index()].is_none() => {
+                    Signal::Coordinate(id) => open.extend(self.coordinate(id).follows),
+                    Signal::Output(id, _) if found[id.index()].is_none() => {
                         found[id.index()] = Some(segment.parent);
                         let inputs = self.components[id.index()].component.inputs();
                         open.extend(inputs.into_iter().map(|(_, _, source)| source));
                     }
-                    Source::Output(..) => {}
+                    Signal::Output(..) => {}
                 }
             }
         }
@@ -158,7 +158,7 @@ impl Model {
             let mut source = c.distance;
             let mut reader = Reader::Translate(index);
             // Along followers, each of which is met once.
-            while let Source::Coordinate(id) = source {
+            while let Signal::Coordinate(id) = source {
                 let coordinate = &self.coordinates[id.index()];
                 let known = &mut of_coordinate[id.index()];
                 if coordinate.kind != CoordinateKind::Translation || known.is_some() {
@@ -168,7 +168,7 @@ impl Model {
                 let Some(leader) = coordinate.follows else { break };
                 (source, reader) = (leader, Reader::Follower(id.index()));
             }
-            if let Source::Output(id, output) = source {
+            if let Signal::Output(id, output) = source {
                 lengths.entry((id.index(), output)).or_default().push((reader, factor));
             }
         }
@@ -181,9 +181,9 @@ impl Model {
                 coordinate.range.upper = coordinate.range.upper.map(|x| x * factor);
             }
         }
-        let of_input = |source: Source| match source {
-            Source::Coordinate(id) => of_coordinate[id.index()],
-            Source::Output(..) => 1.0,
+        let of_input = |source: Signal| match source {
+            Signal::Coordinate(id) => of_coordinate[id.index()],
+            Signal::Output(..) => 1.0,
         };
         // Arguments first: what was said of a distance holds at the larger one.
         for named in &mut self.components {
@@ -204,7 +204,7 @@ impl Model {
         }
         let readers = self.count_readers();
         for ((index, output), users) in lengths {
-            let source = Source::Output(super::ComponentId(index as u32), output);
+            let source = Signal::Output(super::ComponentId(index as u32), output);
             let alike = users.iter().all(|(_, factor)| *factor == users[0].1);
             if alike && readers.get(&source) == Some(&users.len()) {
                 grow_output(&mut self.components[index].component, output, users[0].1);
@@ -224,7 +224,7 @@ impl Model {
         for (&(index, _), users) in lengths {
             let inputs = self.components[index].component.inputs();
             for (_, _, input) in inputs {
-                if let Source::Coordinate(id) = input
+                if let Signal::Coordinate(id) = input
                     && self.coordinate(id).kind == CoordinateKind::Translation
                     && self.coordinate(id).follows.is_none()
                 {
@@ -235,7 +235,7 @@ impl Model {
     }
 
     /// How many ports and followers read each output.
-    fn count_readers(&self) -> HashMap<Source, usize> {
+    fn count_readers(&self) -> HashMap<Signal, usize> {
         let ports = self.components.iter().flat_map(|c| c.component.inputs());
         let ports = ports.map(|(_, _, source)| source);
         let followers = self.coordinates.iter().filter_map(|c| c.follows);
@@ -245,7 +245,7 @@ impl Model {
     }
 
     /// A second output of a function, `factor` times the first.
-    fn output_again(&mut self, index: usize, output: u32, factor: f64) -> Option<Source> {
+    fn output_again(&mut self, index: usize, output: u32, factor: f64) -> Option<Signal> {
         let named = self.components[index].clone();
         match &mut self.components[index].component {
             Component::Map(c) => {
@@ -253,7 +253,7 @@ impl Model {
                 stretch(&mut function, factor, 1.0);
                 c.functions.push(function);
                 let last = c.functions.len() as u32 - 1;
-                Some(Source::Output(super::ComponentId(index as u32), last))
+                Some(Signal::Output(super::ComponentId(index as u32), last))
             }
             Component::Combine(_) => {
                 let name = format!("{}_length", named.name);
@@ -261,13 +261,13 @@ impl Model {
                 grow_output(&mut again.component, output, factor);
                 self.components.push(again);
                 let last = self.components.len() as u32 - 1;
-                Some(Source::Output(super::ComponentId(last), 0))
+                Some(Signal::Output(super::ComponentId(last), 0))
             }
             _ => None,
         }
     }
 
-    fn connect(&mut self, reader: Reader, source: Source) {
+    fn connect(&mut self, reader: Reader, source: Signal) {
         match reader {
             Reader::Translate(index) => {
                 if let Component::Translate(c) = &mut self.components[index].component {

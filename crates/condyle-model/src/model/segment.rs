@@ -1,7 +1,7 @@
 //! Segments: the bones of a character.
 
 use super::{JointSetId, SegmentId};
-use crate::component::Source;
+use crate::component::Signal;
 use condyle_math::Affine;
 
 /// A bone, or any part that moves as one.
@@ -19,7 +19,7 @@ pub struct Segment {
     /// The moving end of its joint, in the segment.
     pub joint_in_segment: Affine,
     /// What moves it: a transform, or nothing.
-    pub motion: Option<Source>,
+    pub motion: Option<Signal>,
     /// The joint set that moves it.
     pub joint_set: Option<JointSetId>,
 }

@@ -12,7 +12,7 @@ use condyle_model::component::{
     Shear, SurfaceAxis, Swinging,
 };
 use condyle_model::limit::{Cone, ConePoint, Projection};
-use condyle_model::{CoordinateKind, JointSetId, Model, ModelBuilder, Range, SegmentId, Source};
+use condyle_model::{CoordinateKind, JointSetId, Model, ModelBuilder, Range, SegmentId, Signal};
 
 /// SplitMix64 (Steele, Lea & Flood 2014): reproducible everywhere, no dependency.
 pub(crate) struct Dice(u64);
@@ -86,10 +86,10 @@ pub(crate) fn random_model(seed: u64) -> (Model, Vec<f64>) {
     let mut b = ModelBuilder::new("random");
     let mut segments: Vec<SegmentId> = vec![];
     let mut parents: Vec<Option<SegmentId>> = vec![];
-    let mut scalars: Vec<Source> = vec![];
-    let mut transforms: Vec<Source> = vec![];
+    let mut scalars: Vec<Signal> = vec![];
+    let mut transforms: Vec<Signal> = vec![];
     // Components whose transforms are not rigid, and segments that they move.
-    let mut bent: HashSet<Source> = HashSet::new();
+    let mut bent: HashSet<Signal> = HashSet::new();
     let mut bent_segments: HashSet<SegmentId> = HashSet::new();
     for i in 0..1 + dice.below(9) {
         let parent = match dice.below(segments.len() + 1) {
@@ -171,8 +171,8 @@ fn grow_coordinate(
     dice: &mut Dice,
     set: JointSetId,
     number: usize,
-    scalars: &mut Vec<Source>,
-    transforms: &mut Vec<Source>,
+    scalars: &mut Vec<Signal>,
+    transforms: &mut Vec<Signal>,
 ) {
     let name = format!("c{number}");
     if dice.below(4) == 0 {
@@ -201,9 +201,9 @@ fn grow_component(
     dice: &mut Dice,
     set: JointSetId,
     number: usize,
-    scalars: &mut Vec<Source>,
-    transforms: &mut Vec<Source>,
-    bent: &mut HashSet<Source>,
+    scalars: &mut Vec<Signal>,
+    transforms: &mut Vec<Signal>,
+    bent: &mut HashSet<Signal>,
 ) {
     let name = format!("component_{number}");
     let any = |dice: &mut Dice| scalars[dice.below(scalars.len())];
@@ -311,7 +311,7 @@ fn grow_component(
             transforms.push(b.constant_curvature(set, &name, column));
         }
         _ if !transforms.is_empty() => {
-            let factors: Vec<Source> =
+            let factors: Vec<Signal> =
                 (0..1 + dice.below(3)).map(|_| transforms[dice.below(transforms.len())]).collect();
             let bends = factors.iter().any(|factor| bent.contains(factor));
             transforms.push(b.product(set, &name, factors));
@@ -365,7 +365,7 @@ pub(crate) fn registry() -> Registry {
     registry
 }
 
-fn grow_factor(b: &mut ModelBuilder, dice: &mut Dice, set: JointSetId, name: &str) -> Source {
+fn grow_factor(b: &mut ModelBuilder, dice: &mut Dice, set: JointSetId, name: &str) -> Signal {
     let id = b.coordinate(set, &format!("{name}_factor"), CoordinateKind::Scale);
     if dice.below(2) == 0 {
         b.coordinate_mut(id).range = Range::new(0.8, 1.3);
@@ -401,8 +401,8 @@ fn grow_cone(
     dice: &mut Dice,
     set: JointSetId,
     name: &str,
-    scalars: &mut Vec<Source>,
-    transforms: &mut Vec<Source>,
+    scalars: &mut Vec<Signal>,
+    transforms: &mut Vec<Signal>,
 ) {
     if dice.below(3) == 0 {
         let rest = dice.vector(1.0) + Vec3::new(0.0, 2.0, 0.0);
@@ -427,10 +427,10 @@ fn grow_cone(
     let count = if matches!(of, Swinging::Directions(..)) { 2 } else { 3 };
     let cone = grow_boundary(dice, rest);
     let limit = b.component(set, name, Component::Cone(JointCone { of, cone }));
-    let Source::Output(id, _) = limit else { return };
+    let Signal::Output(id, _) = limit else { return };
     for k in 0..count {
-        let turn = b.rotate(set, &format!("{name}_{k}"), Source::Output(id, k), axes[k as usize]);
+        let turn = b.rotate(set, &format!("{name}_{k}"), Signal::Output(id, k), axes[k as usize]);
         transforms.push(turn);
-        scalars.push(Source::Output(id, k));
+        scalars.push(Signal::Output(id, k));
     }
 }

@@ -6,7 +6,7 @@ use condyle_model::component::{
     Along, Centre, Component, Contact, ContactPair, JointCone, Law, SurfaceAxis, Swinging,
 };
 use condyle_model::model::ComponentId;
-use condyle_model::{CoordinateId, Mode, Model, SegmentId, Source};
+use condyle_model::{CoordinateId, Mode, Model, SegmentId, Signal};
 use std::cell::Cell;
 use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
@@ -21,7 +21,7 @@ pub(crate) struct Evaluator<'a> {
 }
 
 /// The sources that a limit component limits: one for each of its outputs.
-fn held(model: &Model, limit: ComponentId) -> Vec<Source> {
+fn held(model: &Model, limit: ComponentId) -> Vec<Signal> {
     match &model.components()[limit.index()].component {
         Component::Depend(c) => vec![c.passive],
         Component::Cone(c) => match &c.of {
@@ -38,10 +38,10 @@ impl<'a> Evaluator<'a> {
         // What segments and followers read, directly or not.
         let mut needed = HashSet::new();
         let followed = model.coordinates().iter().filter_map(|c| c.follows);
-        let mut open: Vec<Source> =
+        let mut open: Vec<Signal> =
             model.segments().iter().filter_map(|s| s.motion).chain(followed).collect();
         while let Some(source) = open.pop() {
-            if let Source::Output(id, _) = source
+            if let Signal::Output(id, _) = source
                 && needed.insert(id)
             {
                 open.extend(model.reads(id));
@@ -56,7 +56,7 @@ impl<'a> Evaluator<'a> {
             return vec![self.scalar(leader)];
         }
         match self.last_limit(id) {
-            Some((_, limit, output)) => self.numbers(Source::Output(limit, output)),
+            Some((_, limit, output)) => self.numbers(Signal::Output(limit, output)),
             None => self.asked(id),
         }
     }
@@ -87,10 +87,10 @@ impl<'a> Evaluator<'a> {
     }
 
     /// The number of limits between a coordinate and a source that is this coordinate, limited.
-    fn limits_between(&self, id: CoordinateId, source: Source) -> Option<usize> {
+    fn limits_between(&self, id: CoordinateId, source: Signal) -> Option<usize> {
         match source {
-            Source::Coordinate(other) => (other == id).then_some(0),
-            Source::Output(limit, output) => {
+            Signal::Coordinate(other) => (other == id).then_some(0),
+            Signal::Output(limit, output) => {
                 let source = *held(self.model, limit).get(output as usize)?;
                 self.limits_between(id, source).map(|depth| depth + 1)
             }
@@ -98,11 +98,11 @@ impl<'a> Evaluator<'a> {
     }
 
     /// The numbers of a scalar or an orientation.
-    fn numbers(&self, source: Source) -> Vec<f64> {
+    fn numbers(&self, source: Signal) -> Vec<f64> {
         match source {
-            Source::Coordinate(id) if self.model.coordinate(id).follows.is_none() => self.asked(id),
-            Source::Coordinate(id) => self.coordinate(id),
-            Source::Output(id, output) => match &self.model.components()[id.index()].component {
+            Signal::Coordinate(id) if self.model.coordinate(id).follows.is_none() => self.asked(id),
+            Signal::Coordinate(id) => self.coordinate(id),
+            Signal::Output(id, output) => match &self.model.components()[id.index()].component {
                 Component::Cone(cone) => self.cone(cone, output),
                 _ => vec![self.scalar(source)],
             },
@@ -180,10 +180,10 @@ impl<'a> Evaluator<'a> {
         vec![if other_far < far { other[output as usize] } else { found[output as usize] }]
     }
 
-    fn scalar(&self, source: Source) -> f64 {
+    fn scalar(&self, source: Signal) -> f64 {
         match source {
-            Source::Coordinate(_) => self.numbers(source)[0],
-            Source::Output(id, output) => match &self.model.components()[id.index()].component {
+            Signal::Coordinate(_) => self.numbers(source)[0],
+            Signal::Output(id, output) => match &self.model.components()[id.index()].component {
                 Component::Map(map) => {
                     let x = self.scalar(map.input);
                     map.functions[output as usize].value_and_slope(x).0
@@ -258,8 +258,8 @@ impl<'a> Evaluator<'a> {
         [blend(|pair| pair.first), blend(|pair| pair.second)]
     }
 
-    fn transform(&self, source: Source) -> Affine {
-        let Source::Output(id, _) = source else { panic!("a coordinate is no transform") };
+    fn transform(&self, source: Signal) -> Affine {
+        let Signal::Output(id, _) = source else { panic!("a coordinate is no transform") };
         match &self.model.components()[id.index()].component {
             Component::Rotate(c) => {
                 let angle = self.scalar(c.angle);

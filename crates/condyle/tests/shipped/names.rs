@@ -57,7 +57,7 @@ fn every_model_opens_by_name_and_its_copy_stands_alone() {
         assert_eq!(read.warnings, [], "{name}");
         let text = shipped::text(name).expect(name);
         let own = shipped::read(name).expect(name).value;
-        assert!(own.source == text && own.model == read.value, "{name}");
+        assert!(own.text == text && own.model == read.value, "{name}");
         let copy = shipped::standalone(name).expect(name);
         let mut alone = |file: &str| Err(format!("`{file}` is not here"));
         let again = document::read(&copy, &mut alone).unwrap_or_else(|e| panic!("{name}: {e:?}"));

@@ -7,7 +7,7 @@
 
 use condyle::math::Vec3;
 use condyle::math::function::{Curve, Function, SimmSpline};
-use condyle::model::{JointSetId, Source};
+use condyle::model::{JointSetId, Signal};
 use condyle::{
     CoordinateId, CoordinateKind, Mode, Model, ModelBuilder, Motion, Observed, Program, Range,
     Recording, SegmentId,
@@ -277,7 +277,7 @@ impl Figure {
             let [a, b, c, d] = values;
             spline(&[(0.0, a), (45.0, b), (90.0, c), (120.0, d)])
         };
-        let angle = Source::Coordinate(angle);
+        let angle = Signal::Coordinate(angle);
         let turn =
             self.b.map(set, "turn", angle, knots([0.001137, -0.496173, -1.263786, -1.786335]));
         let x = self.b.map(set, "x", angle, knots([0.0524, 0.025628, -0.0088, -0.0227]));

@@ -1,7 +1,7 @@
 //! A model: segments, coordinates, loops and markers.
 
 use crate::output::{columns, wrapped};
-use condyle::model::component::Source;
+use condyle::model::component::Signal;
 use condyle::model::model::Condition;
 use condyle::model::{Closure, UpAxis};
 use condyle::{CoordinateId, CoordinateKind, Model, SegmentId};
@@ -82,14 +82,14 @@ fn keys(model: &Model) -> Vec<String> {
 fn leader_keys<'k>(model: &Model, id: CoordinateId, keys: &'k [String]) -> Vec<&'k str> {
     let mut leaders = vec![];
     let mut seen = HashSet::new();
-    let mut open: Vec<Source> = model.coordinate(id).follows.into_iter().collect();
+    let mut open: Vec<Signal> = model.coordinate(id).follows.into_iter().collect();
     while let Some(source) = open.pop() {
         if !seen.insert(source) {
             continue;
         }
         match source {
-            Source::Coordinate(leader) => leaders.push(leader),
-            Source::Output(component, _) => {
+            Signal::Coordinate(leader) => leaders.push(leader),
+            Signal::Output(component, _) => {
                 let component = &model.components()[component.index()].component;
                 open.extend(component.inputs().into_iter().map(|(_, _, source)| source));
             }

@@ -8,7 +8,7 @@ use condyle_model::component::{
     Depend, Ellipsoid, Gliding, Heading, JointCone, Map, Pivot, Place, PortType, Product, Rotate,
     Scale, Shear, SurfaceAxis, Swinging, Translate,
 };
-use condyle_model::{Cone, SegmentId, Source};
+use condyle_model::{Cone, SegmentId, Signal};
 
 /// A component without its inputs.
 #[derive(Clone)]
@@ -88,7 +88,7 @@ impl Blueprint {
     /// The component, or why its parameters are invalid.
     pub(super) fn build(
         self,
-        connected: Vec<Source>,
+        connected: Vec<Signal>,
         segment: &mut dyn FnMut(&Name) -> Option<SegmentId>,
     ) -> Result<Component, String> {
         let unknown = || "it names an unknown segment".to_owned();

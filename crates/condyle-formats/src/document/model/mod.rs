@@ -49,15 +49,15 @@ pub struct Document {
     /// The model, with includes, constants and the mirrored side resolved.
     pub model: Model,
     /// The text, comments and all. Saving a document writes this.
-    pub source: String,
+    pub text: String,
 }
 
 impl Document {
     /// A document of a model that was not read from text.
     #[must_use]
     pub fn of(model: Model) -> Self {
-        let source = write(&model);
-        Self { model, source }
+        let text = write(&model);
+        Self { model, text }
     }
 }
 
@@ -155,5 +155,5 @@ pub fn read_with(
         let draft = reader.draft(top);
         resolve::build(draft, reader.texts)
     })?;
-    Ok(read.map(|model| Document { model, source: text.to_owned() }))
+    Ok(read.map(|model| Document { model, text: text.to_owned() }))
 }

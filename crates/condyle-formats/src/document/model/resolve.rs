@@ -8,7 +8,7 @@ use condyle_math::{Affine, Vec3};
 use condyle_model::component::{Component, Place, PortType, Product};
 use condyle_model::model::{AXIS_LENGTH, ComponentId, Condition, JointSetId};
 use condyle_model::{
-    Closure, CoordinateId, CoordinateKind, Model, ModelBuilder, SegmentId, Source,
+    Closure, CoordinateId, CoordinateKind, Model, ModelBuilder, SegmentId, Signal,
 };
 use std::collections::{HashMap, HashSet};
 
@@ -19,7 +19,7 @@ const MOST_DERIVATIVES: u64 = 1 << 24;
 /// What a name in a joint set stands for.
 #[derive(Clone, Copy)]
 struct Meaning {
-    source: Source,
+    source: Signal,
     port: PortType,
     outputs: usize,
 }
@@ -87,9 +87,9 @@ fn located(texts: &Texts, places: &HashMap<Subject, Spot>, found: Diagnostic) ->
 /// The number of factors of all products, expanded.
 fn factors(model: &Model) -> u64 {
     let count = model.components().len();
-    let index = |source: Source| match source {
-        Source::Output(id, _) => Some(id.index()),
-        Source::Coordinate(_) => None,
+    let index = |source: Signal| match source {
+        Signal::Output(id, _) => Some(id.index()),
+        Signal::Coordinate(_) => None,
     };
     let parts: Vec<Vec<usize>> = model
         .components()
@@ -185,7 +185,7 @@ impl Resolver<'_> {
             let Some(&set) = self.sets.get(&c.set) else { continue };
             let stand_in = Component::Place(Place { child_in_parent: Affine::IDENTITY });
             let source = self.builder.component(set, &c.name.text, stand_in);
-            let Source::Output(id, _) = source else { continue };
+            let Signal::Output(id, _) = source else { continue };
             let (port, outputs) = c.blueprint.outputs();
             self.mean(&c.set, &c.name, Meaning { source, port, outputs });
             self.places.insert(Subject::component(&c.set, &c.name.text), c.name.spot);
@@ -212,12 +212,12 @@ impl Resolver<'_> {
                 self.texts.error(name.spot, "model/arity", message, help);
                 continue;
             }
-            let connected: Vec<Option<Source>> = ports
+            let connected: Vec<Option<Signal>> = ports
                 .iter()
                 .enumerate()
                 .map(|(position, port)| self.port(&set, port, blueprint.input(position)))
                 .collect();
-            let connected: Option<Vec<Source>> = connected.into_iter().collect();
+            let connected: Option<Vec<Signal>> = connected.into_iter().collect();
             let Some(connected) = connected else { continue };
             let before = self.texts.count();
             match blueprint.build(connected, &mut |name| self.segment(name)) {
@@ -263,9 +263,9 @@ impl Resolver<'_> {
                 let help = "only one joint set may move a segment";
                 self.texts.error(o.segment.spot, "model/duplicate", message, help);
             }
-            let factors: Vec<Option<Source>> =
+            let factors: Vec<Option<Signal>> =
                 o.ports.iter().map(|p| self.port(&o.set, p, PortType::Transform)).collect();
-            let Some(factors) = factors.into_iter().collect::<Option<Vec<Source>>>() else {
+            let Some(factors) = factors.into_iter().collect::<Option<Vec<Signal>>>() else {
                 continue;
             };
             let motion = match factors[..] {
@@ -364,8 +364,8 @@ impl Resolver<'_> {
 
     fn coordinate(&mut self, name: &Name) -> Option<CoordinateId> {
         match self.port("", name, PortType::Scalar)? {
-            Source::Coordinate(id) => Some(id),
-            Source::Output(..) => {
+            Signal::Coordinate(id) => Some(id),
+            Signal::Output(..) => {
                 let message = format!("`{}` is a component", name.text);
                 self.texts.error(name.spot, "model/port-type", message, "name a coordinate");
                 None
@@ -375,7 +375,7 @@ impl Resolver<'_> {
 
     /// Resolves a port: `name` in its own set, or `set.name`, followed by `.N` for one of several
     /// outputs, counted from 1.
-    fn port(&mut self, own: &str, port: &Name, wanted: PortType) -> Option<Source> {
+    fn port(&mut self, own: &str, port: &Name, wanted: PortType) -> Option<Signal> {
         let parts = parts(&port.text);
         let find =
             |set: &str, name: &str| self.names.get(&(set.to_owned(), name.to_owned())).copied();
@@ -423,7 +423,7 @@ impl Resolver<'_> {
             return None;
         }
         Some(match meaning.source {
-            Source::Output(id, _) => Source::Output(id, output as u32 - 1),
+            Signal::Output(id, _) => Signal::Output(id, output as u32 - 1),
             coordinate => coordinate,
         })
     }

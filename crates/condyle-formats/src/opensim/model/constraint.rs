@@ -8,7 +8,7 @@ use condyle_diagnostics::{Error, nearest};
 use condyle_math::function::FunctionOfSeveral;
 use condyle_math::{Affine, EulerOrder, Vec3};
 use condyle_model::model::{Closure, Condition};
-use condyle_model::{CoordinateId, Source};
+use condyle_model::{CoordinateId, Signal};
 use std::collections::HashMap;
 
 /// Reads the constraint set.
@@ -196,7 +196,7 @@ fn coupler(
                     .with_help("remove one coupler of the circle"));
             }
             let set = reader.builder.coordinates()[dependent.index()].joint_set;
-            let sources = independents.iter().map(|&id| Source::Coordinate(id)).collect();
+            let sources = independents.iter().map(|&id| Signal::Coordinate(id)).collect();
             let mut leader = reader.builder.combine(set, &name, sources, function);
             if scale != 1.0 {
                 let scaled = FunctionOfSeveral::Linear { slopes: vec![scale], intercept: 0.0 };

@@ -22,15 +22,15 @@ use condyle_diagnostics::Error;
 use condyle_math::function::{Curve, Function};
 use condyle_math::{Affine, Mat3, Vec3};
 use condyle_model::component::ConstantCurvature;
-use condyle_model::{CoordinateId, CoordinateKind, JointSetId, Range, Source};
+use condyle_model::{CoordinateId, CoordinateKind, JointSetId, Range, Signal};
 use std::f64::consts::FRAC_PI_2;
 
 /// One elementary motion, which knows its inverse.
 enum Factor {
-    Turn(Source, Vec3),
-    Slide(Source, Vec3),
+    Turn(Signal, Vec3),
+    Slide(Signal, Vec3),
     Fixed(Affine),
-    Law(Source),
+    Law(Signal),
 }
 
 /// Adds the joint set of one joint to the model.
@@ -139,8 +139,8 @@ impl<'d> Coordinates<'d> {
         Ok(coordinates)
     }
 
-    fn source(&self, index: usize) -> Source {
-        Source::Coordinate(self.ids[index].1)
+    fn source(&self, index: usize) -> Signal {
+        Signal::Coordinate(self.ids[index].1)
     }
 
     fn named(
@@ -374,8 +374,8 @@ fn amount(
     name: &str,
     inputs: &[CoordinateId],
     function: Option<AnyFunction>,
-) -> Result<Option<Source>, Error> {
-    let sources: Vec<Source> = inputs.iter().map(|&id| Source::Coordinate(id)).collect();
+) -> Result<Option<Signal>, Error> {
+    let sources: Vec<Signal> = inputs.iter().map(|&id| Signal::Coordinate(id)).collect();
     let mismatch = |expected: usize| {
         element
             .error(

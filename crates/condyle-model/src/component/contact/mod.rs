@@ -37,7 +37,7 @@ mod quartic;
 
 pub use pairs::ContactPair;
 
-use super::Source;
+use super::Signal;
 use crate::position::SegmentId;
 use closest::distance;
 use condyle_math::{Affine, Mat3, Scalar, Vec3};
@@ -52,9 +52,9 @@ pub struct Contact {
     /// The segment in which the ellipsoid is fixed: the thorax, or a bone that moves with it.
     pub surface: SegmentId,
     /// The transform of the segment's own joint, applied before the two rotations.
-    pub before: Option<Source>,
+    pub before: Option<Signal>,
     /// The scalars that interpolate between the pairs: at most two.
-    pub drivers: Vec<Source>,
+    pub drivers: Vec<Signal>,
     /// Ellipsoid, axis and pairs of points.
     pub law: Gliding,
 }

@@ -1,8 +1,8 @@
 //! Compilation of chains: the steps of the motions of segments, concatenated.
 
 use super::super::instruction::{AnyLaw, ContactCall, Instruction, LawCall, NO_BASE, Step};
-use super::{Compiler, Scalar};
-use crate::component::{Compensate, Component, Contact, Source, shear};
+use super::{Compiler, Operand};
+use crate::component::{Compensate, Component, Contact, Signal, shear};
 use crate::model::{ComponentId, SegmentId};
 use condyle_math::{Affine, Mat3, Vec3};
 
@@ -31,7 +31,7 @@ impl Compiler<'_> {
             for &id in &path {
                 let segment = self.model.segment(id);
                 self.fixed(Affine::from_rotation(segment.joint_in_parent.linear), &mut steps);
-                if let Some(Source::Output(motion, _)) = segment.motion
+                if let Some(Signal::Output(motion, _)) = segment.motion
                     && let Some(of) = self.shared[motion.index()]
                 {
                     // The first path has exponent 1 everywhere, the second 1 - w for named
@@ -61,7 +61,7 @@ impl Compiler<'_> {
             let segment = self.model.segment(id);
             self.fixed(segment.joint_in_parent, &mut steps);
             let motion = if id == contact.segment { contact.before } else { segment.motion };
-            if let Some(Source::Output(motion, _)) = motion
+            if let Some(Signal::Output(motion, _)) = motion
                 && let Some(register) = self.shared[motion.index()]
             {
                 steps.push(Step::Transform(register));
@@ -98,10 +98,10 @@ impl Compiler<'_> {
     /// Appends the steps of a transform component. Products are expanded with an explicit stack, so
     /// the depth of nesting does not matter.
     pub(super) fn append(&mut self, id: ComponentId, steps: &mut Vec<Step>) {
-        let mut stack = vec![Source::Output(id, 0)];
+        let mut stack = vec![Signal::Output(id, 0)];
         let mut at_root = true;
         while let Some(source) = stack.pop() {
-            let Source::Output(id, _) = source else { continue };
+            let Signal::Output(id, _) = source else { continue };
             // The root itself may be the shared component that is being compiled.
             if let Some(register) = self.shared[id.index()]
                 && !at_root
@@ -114,20 +114,20 @@ impl Compiler<'_> {
                 Component::Product(product) => stack.extend(product.factors.iter().rev()),
                 Component::Place(place) => self.fixed(place.child_in_parent, steps),
                 Component::Rotate(rotate) => match self.scalar(rotate.angle) {
-                    Scalar::Constant(angle) => {
+                    Operand::Constant(angle) => {
                         let turn = Mat3::rotation_about(rotate.axis, angle.sin_cos());
                         self.fixed(Affine::from_rotation(turn), steps);
                     }
-                    Scalar::Register(angle) => {
+                    Operand::Register(angle) => {
                         let turn = self.turn(rotate.axis, angle);
                         steps.push(turn);
                     }
                 },
                 Component::Translate(translate) => match self.scalar(translate.distance) {
-                    Scalar::Constant(distance) => {
+                    Operand::Constant(distance) => {
                         self.fixed(Affine::from_translation(translate.axis * distance), steps);
                     }
-                    Scalar::Register(distance) => {
+                    Operand::Register(distance) => {
                         steps.push(Step::Slide { axis: translate.axis, distance });
                         merge_slides(steps);
                     }
@@ -139,7 +139,7 @@ impl Compiler<'_> {
                 }
                 Component::Pivot(law) => {
                     let angle = self.scalar(law.angle);
-                    if let (Some(centre), Scalar::Register(angle)) = (law.fixed_centre(), angle) {
+                    if let (Some(centre), Operand::Register(angle)) = (law.fixed_centre(), angle) {
                         // One centre: a rotation between two shifts, cheaper than the law.
                         self.fixed(Affine::from_translation(centre), steps);
                         let turn = self.turn(law.axis(), angle);
@@ -156,22 +156,22 @@ impl Compiler<'_> {
                     self.law(AnyLaw::ConstantCurvature(law.clone()), &law.angles, steps);
                 }
                 Component::Scale(scale) => match self.scalar(scale.factor) {
-                    Scalar::Constant(factor) => {
+                    Operand::Constant(factor) => {
                         let linear = scale.along.matrix(factor);
                         self.fixed(Affine::new(linear, Vec3::ZERO), steps);
                     }
-                    Scalar::Register(factor) => {
+                    Operand::Register(factor) => {
                         self.program.code.scales.push(scale.along);
                         let along = self.program.code.scales.len() as u32 - 1;
                         steps.push(Step::Stretch { along, factor });
                     }
                 },
                 Component::Shear(shear) => match self.scalar(shear.amount) {
-                    Scalar::Constant(amount) => {
+                    Operand::Constant(amount) => {
                         let linear = shear::matrix(shear.along, shear.across, amount);
                         self.fixed(Affine::new(linear, Vec3::ZERO), steps);
                     }
-                    Scalar::Register(amount) => {
+                    Operand::Register(amount) => {
                         self.program.code.shears.push([shear.along, shear.across]);
                         let directions = self.program.code.shears.len() as u32 - 1;
                         steps.push(Step::Shear { directions, amount });
@@ -204,7 +204,7 @@ impl Compiler<'_> {
         }
     }
 
-    pub(super) fn law(&mut self, law: AnyLaw, inputs: &[Source], steps: &mut Vec<Step>) {
+    pub(super) fn law(&mut self, law: AnyLaw, inputs: &[Signal], steps: &mut Vec<Step>) {
         let inputs = inputs
             .iter()
             .map(|&source| {
@@ -241,7 +241,7 @@ impl Compiler<'_> {
         let base = segment.parent.map_or(self.program.code.base, |p| p.0);
         let mut steps = vec![];
         self.fixed(segment.joint_in_parent, &mut steps);
-        if let Some(Source::Output(component, _)) = segment.motion {
+        if let Some(Signal::Output(component, _)) = segment.motion {
             match self.shared[component.index()] {
                 Some(register) => steps.push(Step::Transform(register)),
                 None => self.append(component, &mut steps),

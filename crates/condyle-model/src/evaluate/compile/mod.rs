@@ -6,13 +6,13 @@ mod scalar;
 use super::derivative_plan::{DerivativePlan, plan};
 use super::instruction::{Code, Instruction};
 use super::program::Program;
-use crate::component::{Component, Source, Swinging};
+use crate::component::{Component, Signal, Swinging};
 use crate::model::{ComponentId, CoordinateId, CoordinateKind, Model, Node, dependency_order};
 use std::collections::HashMap;
 
 /// The compiled form of a source: a constant or a register.
 #[derive(Clone, Copy, Debug)]
-enum Scalar {
+enum Operand {
     Constant(f64),
     Register(u32),
 }
@@ -21,9 +21,9 @@ struct Compiler<'m> {
     model: &'m Model,
     program: Program,
     /// The value of each coordinate as components read it (for an orientation its first register).
-    coordinates: Vec<Scalar>,
+    coordinates: Vec<Operand>,
     /// The value of each output of each scalar component.
-    outputs: Vec<Vec<Scalar>>,
+    outputs: Vec<Vec<Operand>>,
     /// The register of each transform component with several readers.
     shared: Vec<Option<u32>>,
     /// For each compensation the registers of the path without and with compensation.
@@ -34,7 +34,7 @@ struct Compiler<'m> {
     readers: Vec<usize>,
     needed: Vec<bool>,
     /// The outputs of limit components that are the effective value of a coordinate.
-    effective: HashMap<Source, CoordinateId>,
+    effective: HashMap<Signal, CoordinateId>,
 }
 
 impl Program {
@@ -79,7 +79,7 @@ fn compile(model: &Model) -> Program {
         },
         coordinates: model
             .coordinate_ids()
-            .map(|id| Scalar::Register(model.stored_range(id).start as u32))
+            .map(|id| Operand::Register(model.stored_range(id).start as u32))
             .collect(),
         outputs: vec![vec![]; components],
         shared: vec![None; components],
@@ -99,7 +99,7 @@ fn compile(model: &Model) -> Program {
     for segment in model.parents_first() {
         compiler.segment(segment);
     }
-    // Scalar instructions read scalars only, so all of them can run first. The sort is stable.
+    // Operand instructions read scalars only, so all of them can run first. The sort is stable.
     let code = &mut compiler.program.code;
     code.instructions.sort_by_key(|instruction| !instruction.makes_scalars());
     code.scalar_instructions = code.instructions.partition_point(Instruction::makes_scalars);
@@ -107,8 +107,8 @@ fn compile(model: &Model) -> Program {
         .coordinate_ids()
         .filter(|&id| model.coordinate(id).follows.is_none())
         .filter_map(|id| match compiler.coordinates[id.index()] {
-            Scalar::Register(register) => Some((register, model.tangent_range(id).start as u32)),
-            Scalar::Constant(_) => None,
+            Operand::Register(register) => Some((register, model.tangent_range(id).start as u32)),
+            Operand::Constant(_) => None,
         })
         .collect();
     compiler.program.plan =
@@ -123,7 +123,7 @@ impl Compiler<'_> {
         let roots = self.model.segments.iter().filter_map(|s| s.motion);
         let roots = roots.chain(self.model.coordinates.iter().filter_map(|c| c.follows));
         for source in roots {
-            if let Source::Output(id, _) = source {
+            if let Signal::Output(id, _) = source {
                 self.needed[id.index()] = true;
                 self.readers[id.index()] += 1;
             }
@@ -135,7 +135,7 @@ impl Compiler<'_> {
                 continue;
             }
             for source in self.model.reads(id) {
-                if let Source::Output(input, _) = source {
+                if let Signal::Output(input, _) = source {
                     self.needed[input.index()] = true;
                     self.readers[input.index()] += 1;
                 }
@@ -148,14 +148,14 @@ impl Compiler<'_> {
     /// last in the model). Whatever reads the coordinate itself gets the requested value.
     fn find_effective(&mut self, order: &[Node]) {
         // For each output the coordinate that it holds, and the number of limits up to it.
-        let mut origin: HashMap<Source, (CoordinateId, usize)> = HashMap::new();
-        let mut last: HashMap<CoordinateId, (usize, ComponentId, Source)> = HashMap::new();
+        let mut origin: HashMap<Signal, (CoordinateId, usize)> = HashMap::new();
+        let mut last: HashMap<CoordinateId, (usize, ComponentId, Signal)> = HashMap::new();
         for node in order {
             let Node::Component(id) = *node else { continue };
             if !self.needed[id.index()] {
                 continue;
             }
-            let held: Vec<Source> = match &self.model.components[id.index()].component {
+            let held: Vec<Signal> = match &self.model.components[id.index()].component {
                 Component::Depend(c) => vec![c.passive],
                 Component::Cone(c) => match &c.of {
                     Swinging::Angles(angles, _) => angles.to_vec(),
@@ -168,14 +168,14 @@ impl Compiler<'_> {
                 // A limit on the output of another one acts on the same coordinate, one level
                 // deeper.
                 let found = match source {
-                    Source::Coordinate(id) => Some((id, 0)),
+                    Signal::Coordinate(id) => Some((id, 0)),
                     output => origin.get(&output).copied(),
                 };
                 let Some((coordinate, depth)) = found else { continue };
                 if self.model.coordinate(coordinate).follows.is_some() {
                     continue;
                 }
-                let output = Source::Output(id, k as u32);
+                let output = Signal::Output(id, k as u32);
                 origin.insert(output, (coordinate, depth + 1));
                 let far = (depth + 1, id, output);
                 let best = last.entry(coordinate).or_insert(far);
@@ -192,7 +192,7 @@ impl Compiler<'_> {
             let own = self.model.stored_range(id);
             let asked = self.program.code.scalars as u32;
             self.program.code.scalars += own.len();
-            self.coordinates[id.index()] = Scalar::Register(asked);
+            self.coordinates[id.index()] = Operand::Register(asked);
             let pairs = own.zip(asked..).map(|(own, asked)| (own as u32, asked));
             self.program.asked.extend(pairs);
         }

@@ -1,27 +1,27 @@
 //! Compilation of scalar components to scalar instructions.
 
 use super::super::instruction::{CombineCall, ConeCall, Instruction, NO_BASE, NO_BOUND};
-use super::{Compiler, Scalar};
-use crate::component::{Component, Depend, JointCone, Source, Swinging};
+use super::{Compiler, Operand};
+use crate::component::{Component, Depend, JointCone, Signal, Swinging};
 use crate::model::{ComponentId, Node};
 use condyle_math::function::FunctionOfSeveral;
 
 impl Compiler<'_> {
-    pub(super) fn scalar(&self, source: Source) -> Scalar {
+    pub(super) fn scalar(&self, source: Signal) -> Operand {
         match source {
-            Source::Coordinate(id) => self.coordinates[id.index()],
-            Source::Output(id, output) => self.outputs[id.index()]
+            Signal::Coordinate(id) => self.coordinates[id.index()],
+            Signal::Output(id, output) => self.outputs[id.index()]
                 .get(output as usize)
                 .copied()
-                .unwrap_or(Scalar::Constant(0.0)),
+                .unwrap_or(Operand::Constant(0.0)),
         }
     }
 
     /// The register of a scalar; a new one for a constant.
-    pub(super) fn register(&mut self, scalar: Scalar) -> u32 {
+    pub(super) fn register(&mut self, scalar: Operand) -> u32 {
         match scalar {
-            Scalar::Register(register) => register,
-            Scalar::Constant(value) => {
+            Operand::Register(register) => register,
+            Operand::Constant(value) => {
                 let register = self.new_scalar();
                 self.program.constants.push((register, value));
                 register
@@ -42,11 +42,11 @@ impl Compiler<'_> {
                 // the pose expect it.
                 let own = self.model.stored_range(id).start as u32;
                 match self.scalar(leader) {
-                    Scalar::Constant(value) => {
+                    Operand::Constant(value) => {
                         self.program.constants.push((own, value));
-                        self.coordinates[id.index()] = Scalar::Constant(value);
+                        self.coordinates[id.index()] = Operand::Constant(value);
                     }
-                    Scalar::Register(input) => {
+                    Operand::Register(input) => {
                         let identity = condyle_math::function::Function::identity();
                         self.function(identity, input, own);
                     }
@@ -76,22 +76,22 @@ impl Compiler<'_> {
                     let value = function.as_constant();
                     // Constants are folded, and the identity needs no instruction.
                     let result = match (input, value, function.as_linear()) {
-                        (_, Some(value), _) => Scalar::Constant(value),
-                        (Scalar::Constant(x), ..) => {
-                            Scalar::Constant(function.value_and_slope(x).0)
+                        (_, Some(value), _) => Operand::Constant(value),
+                        (Operand::Constant(x), ..) => {
+                            Operand::Constant(function.value_and_slope(x).0)
                         }
                         (register, _, Some((1.0, 0.0))) => register,
-                        (Scalar::Register(input), ..) => {
+                        (Operand::Register(input), ..) => {
                             let output = self.new_scalar();
                             self.function(function.clone(), input, output);
-                            Scalar::Register(output)
+                            Operand::Register(output)
                         }
                     };
                     self.outputs[id.index()].push(result);
                 }
             }
             Component::Combine(combine) => {
-                let inputs: Vec<Scalar> = combine.inputs.iter().map(|&s| self.scalar(s)).collect();
+                let inputs: Vec<Operand> = combine.inputs.iter().map(|&s| self.scalar(s)).collect();
                 let result = self.combine(&combine.function, &inputs);
                 self.outputs[id.index()].push(result);
             }
@@ -124,7 +124,7 @@ impl Compiler<'_> {
 
     /// Compiles a passive scalar between bounds that a driver sets: its effective value, and a
     /// limit row for each bound.
-    pub(super) fn depend(&mut self, id: ComponentId, depend: &Depend) -> Scalar {
+    pub(super) fn depend(&mut self, id: ComponentId, depend: &Depend) -> Operand {
         let passive = self.scalar(depend.passive);
         let passive = self.register(passive);
         let driver = self.scalar(depend.driver);
@@ -137,15 +137,15 @@ impl Compiler<'_> {
             self.function(function.clone(), driver, *bound);
             self.row(passive, *bound, sign);
         }
-        let output = self.limit_output(Source::Output(id, 0));
+        let output = self.limit_output(Signal::Output(id, 0));
         let [lower, upper] = bounds;
         self.program.code.instructions.push(Instruction::Hold { passive, lower, upper, output });
-        Scalar::Register(output)
+        Operand::Register(output)
     }
 
     /// The register of an output of a limit component: the coordinate's own if the output is its
     /// effective value, otherwise a new one.
-    fn limit_output(&mut self, output: Source) -> u32 {
+    fn limit_output(&mut self, output: Signal) -> u32 {
         match self.effective.get(&output) {
             Some(&id) => self.model.stored_range(id).start as u32,
             None => self.new_scalar(),
@@ -153,14 +153,14 @@ impl Compiler<'_> {
     }
 
     /// Compiles a ball joint inside a cone: its effective numbers, and its limit rows.
-    fn cone(&mut self, id: ComponentId, component: &JointCone) -> Vec<Scalar> {
+    fn cone(&mut self, id: ComponentId, component: &JointCone) -> Vec<Operand> {
         let (mut inputs, mut outputs) = (vec![], vec![]);
         match &component.of {
             Swinging::Orientation(source) => {
                 let scalar = self.scalar(*source);
                 let first = self.register(scalar);
                 inputs.extend(first..first + 4);
-                let output = Source::Output(id, 0);
+                let output = Signal::Output(id, 0);
                 let first = match self.effective.get(&output) {
                     Some(&id) => self.model.stored_range(id).start as u32,
                     None => {
@@ -176,13 +176,13 @@ impl Compiler<'_> {
                 {
                     let scalar = self.scalar(source);
                     inputs.push(self.register(scalar));
-                    outputs.push(self.limit_output(Source::Output(id, k as u32)));
+                    outputs.push(self.limit_output(Signal::Output(id, k as u32)));
                 }
             }
         }
         let rows: Vec<u32> = (0..component.rows()).map(|_| self.new_scalar()).collect();
         self.program.code.rows.extend(&rows);
-        let results = outputs.iter().map(|&register| Scalar::Register(register)).collect();
+        let results = outputs.iter().map(|&register| Operand::Register(register)).collect();
         let call = ConeCall { component: component.clone(), inputs, outputs, rows };
         self.program.code.cones.push(call);
         let cone = self.program.code.cones.len() as u32 - 1;
@@ -193,7 +193,7 @@ impl Compiler<'_> {
     /// Adds the limit row `sign · (value - bound) ≥ 0`.
     pub(super) fn row(&mut self, value: u32, bound: u32, sign: f64) {
         let function = FunctionOfSeveral::Linear { slopes: vec![sign, -sign], intercept: 0.0 };
-        let inputs = [value, bound].map(Scalar::Register);
+        let inputs = [value, bound].map(Operand::Register);
         let row = self.combine(&function, &inputs);
         let row = self.register(row);
         self.program.code.rows.push(row);
@@ -210,27 +210,27 @@ impl Compiler<'_> {
             let value = self.model.stored_range(id).start as u32;
             for (bound, sign) in [(lower, 1.0), (upper, -1.0)] {
                 if bound.is_finite() {
-                    let bound = self.register(Scalar::Constant(bound));
+                    let bound = self.register(Operand::Constant(bound));
                     self.row(value, bound, sign);
                 }
             }
         }
     }
 
-    pub(super) fn combine(&mut self, function: &FunctionOfSeveral, inputs: &[Scalar]) -> Scalar {
+    pub(super) fn combine(&mut self, function: &FunctionOfSeveral, inputs: &[Operand]) -> Operand {
         let constants: Vec<f64> = inputs
             .iter()
-            .filter_map(|s| if let Scalar::Constant(v) = s { Some(*v) } else { None })
+            .filter_map(|s| if let Operand::Constant(v) = s { Some(*v) } else { None })
             .collect();
         // All inputs are constant: folded.
         if constants.len() == inputs.len() {
-            return Scalar::Constant(function.apply(&constants));
+            return Operand::Constant(function.apply(&constants));
         }
         let inputs: Vec<u32> = inputs.iter().map(|&s| self.register(s)).collect();
         let output = self.new_scalar();
         self.program.code.combines.push(CombineCall { function: function.clone(), inputs });
         let function = self.program.code.combines.len() as u32 - 1;
         self.program.code.instructions.push(Instruction::Combine { function, output });
-        Scalar::Register(output)
+        Operand::Register(output)
     }
 }

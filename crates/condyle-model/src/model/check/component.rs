@@ -3,7 +3,7 @@
 use super::{AXIS_LENGTH, finding, source_type};
 use crate::component::{
     Compensate, Component, Contact, Curve, JointCone, Law, MOST_COMBINED, MOST_LAW_INPUTS, Shear,
-    Source, Swinging,
+    Signal, Swinging,
 };
 use crate::model::{Condition, Model, NamedComponent, Node, SegmentId, dependency_order};
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
@@ -38,7 +38,7 @@ pub(super) fn check_components(model: &Model, findings: &mut Vec<Diagnostic>) {
         let place = Part::of(model, named);
         for (port, expected, source) in named.component.inputs() {
             let found = source_type(model, source);
-            if let Source::Output(id, output) = source
+            if let Signal::Output(id, output) = source
                 && output as usize >= model.components[id.index()].component.outputs().1
             {
                 findings.push(finding(
@@ -217,8 +217,8 @@ fn deforming_components(model: &Model) -> Vec<bool> {
     deforming
 }
 
-fn deforms(deforming: &[bool], source: Source) -> bool {
-    matches!(source, Source::Output(id, _) if deforming[id.index()])
+fn deforms(deforming: &[bool], source: Signal) -> bool {
+    matches!(source, Signal::Output(id, _) if deforming[id.index()])
 }
 
 fn check_closures(model: &Model, deforming: &[bool], findings: &mut Vec<Diagnostic>) {
@@ -333,7 +333,7 @@ fn check_rigid(
     model: &Model,
     place: &Part,
     segment: SegmentId,
-    motion: Option<Source>,
+    motion: Option<Signal>,
     deforming: &[bool],
     findings: &mut Vec<Diagnostic>,
 ) {

@@ -6,7 +6,7 @@ mod order;
 pub(crate) use order::{Node, dependency_order};
 
 use super::{CoordinateKind, Model, SegmentId};
-use crate::component::{PortType, Source};
+use crate::component::{PortType, Signal};
 use component::check_components;
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use std::collections::HashMap;
@@ -214,12 +214,12 @@ fn check_coordinates(model: &Model, findings: &mut Vec<Diagnostic>) {
     }
 }
 
-fn source_type(model: &Model, source: Source) -> PortType {
+fn source_type(model: &Model, source: Signal) -> PortType {
     match source {
-        Source::Coordinate(id) => match model.coordinate(id).kind {
+        Signal::Coordinate(id) => match model.coordinate(id).kind {
             CoordinateKind::Orientation => PortType::Orientation,
             _ => PortType::Scalar,
         },
-        Source::Output(id, _) => model.components[id.index()].component.outputs().0,
+        Signal::Output(id, _) => model.components[id.index()].component.outputs().0,
     }
 }

@@ -1,6 +1,6 @@
 //! The order in which things are computed, or the circle that forbids one.
 
-use crate::component::Source;
+use crate::component::Signal;
 use crate::model::{ComponentId, CoordinateId, Model};
 use condyle_diagnostics::Subject;
 
@@ -19,9 +19,9 @@ pub(crate) enum Node {
 /// The first node of a circle, and the names along it, the first one repeated at the end.
 pub(crate) fn dependency_order(model: &Model) -> Result<Vec<Node>, (Subject, Vec<String>)> {
     let coordinates = model.coordinates.len();
-    let number = |source: Source| match source {
-        Source::Coordinate(id) => id.index(),
-        Source::Output(id, _) => coordinates + id.index(),
+    let number = |source: Signal| match source {
+        Signal::Coordinate(id) => id.index(),
+        Signal::Output(id, _) => coordinates + id.index(),
     };
     let reads = |node: usize| -> Vec<usize> {
         if node < coordinates {

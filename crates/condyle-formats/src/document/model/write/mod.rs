@@ -6,7 +6,7 @@ use super::mirror::escaped;
 use condyle_math::function::{Curve, Function, FunctionOfSeveral};
 use condyle_math::{Affine, EulerOrder, Mat3, Vec3};
 use condyle_model::model::Condition;
-use condyle_model::{Coordinate, CoordinateKind, Model, Range, Segment, SegmentId, Source, UpAxis};
+use condyle_model::{Coordinate, CoordinateKind, Model, Range, Segment, SegmentId, Signal, UpAxis};
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 
@@ -157,13 +157,13 @@ impl Writer<'_> {
     }
 
     /// A port as a string: the bare name within its own set.
-    fn port(&self, own: Option<usize>, source: Source) -> String {
+    fn port(&self, own: Option<usize>, source: Signal) -> String {
         let (set, name, output) = match source {
-            Source::Coordinate(id) => {
+            Signal::Coordinate(id) => {
                 let c = self.model.coordinate(id);
                 (c.joint_set.index(), c.name.as_str(), 0)
             }
-            Source::Output(id, output) => {
+            Signal::Output(id, output) => {
                 let set = self.model.components()[id.index()].joint_set.index();
                 (set, self.components[id.index()].as_str(), output)
             }
@@ -216,8 +216,8 @@ impl Writer<'_> {
                     line!(self, "frames = [{}, {}]", one(&at[0]), one(&at[1]));
                 }
                 Condition::Coupling { follower, driver, function: f } => {
-                    let follower = self.port(None, Source::Coordinate(*follower));
-                    let driver = self.port(None, Source::Coordinate(*driver));
+                    let follower = self.port(None, Signal::Coordinate(*follower));
+                    let driver = self.port(None, Signal::Coordinate(*driver));
                     let f = function(f);
                     line!(
                         self,
