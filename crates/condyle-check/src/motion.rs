@@ -542,8 +542,7 @@ fn farthest_angle(model: &Model, motion: &Motion) -> f64 {
     let mut most = 0.0f64;
     for id in model.coordinate_ids() {
         if model.coordinate(id).kind == CoordinateKind::Rotation {
-            let place = model.stored_range(id).start;
-            most = motion.frames.iter().map(|f| f[place].abs()).fold(most, f64::max);
+            most = motion.frames.iter().map(|f| model.value(f, id).abs()).fold(most, f64::max);
         }
     }
     most

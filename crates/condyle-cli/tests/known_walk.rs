@@ -20,8 +20,7 @@ fn angle_errors(model: &Model, a: &Motion, b: &Motion) -> (f64, f64) {
     for (x, y) in a.frames.iter().zip(&b.frames) {
         for id in model.coordinate_ids() {
             if model.coordinate(id).kind == CoordinateKind::Rotation {
-                let place = model.stored_range(id).start;
-                let off = (x[place] - y[place]).to_degrees();
+                let off = (model.value(x, id) - model.value(y, id)).to_degrees();
                 sum += off * off;
                 max = max.max(off.abs());
                 n += 1.0;

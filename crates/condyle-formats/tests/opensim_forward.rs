@@ -33,7 +33,7 @@ fn every_body_agrees_with_opensim_to_a_micrometre() {
             let mut stored = model.defaults();
             for (key, value) in sample["pose"].as_object().unwrap() {
                 let id = model.find_coordinate(key).unwrap_or_else(|e| panic!("{name}: {e}"));
-                stored[model.stored_range(id).start] = value.as_f64().unwrap();
+                *model.value_mut(&mut stored, id) = value.as_f64().unwrap();
             }
             program.evaluate(&stored, Mode::Open, &mut pose).unwrap();
             for (segment, rows) in sample["segments"].as_object().unwrap() {

@@ -43,7 +43,7 @@ fn bodies_and_markers_stand_where_opensim_puts_them() {
             let mut stored = model.defaults();
             for (key, value) in sample["pose"].as_object().unwrap() {
                 let id = model.find_coordinate(key).unwrap();
-                stored[model.stored_range(id).start] = value.as_f64().unwrap();
+                *model.value_mut(&mut stored, id) = value.as_f64().unwrap();
             }
             program.evaluate(&stored, Mode::Open, &mut pose).unwrap();
             for (name, rows) in sample["segments"].as_object().unwrap() {

@@ -108,7 +108,7 @@ impl Shoulder {
         let mut stored = vec![0.0; self.model.stored_len()];
         for (name, value) in degrees {
             let id = self.model.find_coordinate(name).map_err(|_| format!("no `{name}`"))?;
-            stored[self.model.stored_range(id).start] = value.to_radians();
+            *self.model.value_mut(&mut stored, id) = value.to_radians();
         }
         let mut pose = Pose::new(&self.program);
         self.program.evaluate(&stored, Mode::Posed, &mut pose)?;

@@ -114,7 +114,7 @@ fn person() -> (Model, Model, Vec<f64>) {
     ];
     for (name, angle) in stands {
         let id = model.find_coordinate(name).expect(name);
-        stored[model.stored_range(id).start] = angle;
+        *model.value_mut(&mut stored, id) = angle;
     }
     (model, person, stored)
 }
@@ -380,7 +380,7 @@ fn one_factor_multiplies_every_place_of_published_models() {
             let small: Vec<f64> = model.defaults().iter().map(|q| q + 0.3 * dice.next()).collect();
             let mut large = small.clone();
             for id in model.coordinate_ids().filter(|&id| between(id)) {
-                large[model.stored_range(id).start] *= k;
+                *model.value_mut(&mut large, id) *= k;
             }
             let (before, after) = (pose(&model, &small), pose(&larger, &large));
             for id in model.segment_ids() {

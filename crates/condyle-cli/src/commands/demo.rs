@@ -158,8 +158,8 @@ impl Closeness {
         let mut worst = (String::new(), 0.0);
         let (mut sum, mut n) = (0.0, 0.0_f64);
         for id in rotations {
-            let place = model.stored_range(id).start;
-            let squares: f64 = frames().map(|(a, b)| (a[place] - b[place]).powi(2)).sum();
+            let off = |a: &[f64], b: &[f64]| model.value(a, id) - model.value(b, id);
+            let squares: f64 = frames().map(|(a, b)| off(a, b).powi(2)).sum();
             let rms = (squares / count).sqrt().to_degrees();
             if rms > worst.1 {
                 worst = (model.coordinate_key(id), rms);

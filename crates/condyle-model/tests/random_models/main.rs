@@ -154,7 +154,7 @@ fn legal_coordinates_give_the_same_pose_in_both_modes() {
         // A limit may push a coordinate out of its range, or break another limit.
         let in_range = model.coordinate_ids().all(|id| {
             let coordinate = model.coordinate(id);
-            let value = within[model.stored_range(id).start];
+            let value = model.value(&within, id);
             coordinate.follows.is_some() || coordinate.range.distance(value) >= 0.0
         });
         if in_range && (0..program.limit_row_len()).all(|row| open.limit_row(row) >= 0.0) {

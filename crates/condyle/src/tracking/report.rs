@@ -106,9 +106,8 @@ impl Tracking {
     pub fn at_limits(&self, model: &Model) -> Vec<(CoordinateId, usize)> {
         let touches = |id: CoordinateId| {
             let (lower, upper) = model.coordinate(id).range.bounds();
-            let place = model.stored_range(id).start;
-            let frames = self.motion.frames.iter();
-            frames.filter(|f| f[place] <= lower || f[place] >= upper).count()
+            let values = self.motion.frames.iter().map(|frame| model.value(frame, id));
+            values.filter(|&value| value <= lower || value >= upper).count()
         };
         let free = model.coordinate_ids().filter(|&id| model.coordinate(id).follows.is_none());
         free.map(|id| (id, touches(id))).filter(|(_, frames)| *frames > 0).collect()

@@ -11,7 +11,7 @@ fn inside(model: &Model, draws: &mut Draws) -> Vec<f64> {
     for id in model.coordinate_ids() {
         let (lower, upper) = model.coordinate(id).range.bounds();
         let (lower, upper) = (lower.max(-0.5), upper.min(0.5));
-        stored[model.stored_range(id).start] = lower + (upper - lower) * draws.share();
+        *model.value_mut(&mut stored, id) = lower + (upper - lower) * draws.share();
     }
     stored
 }

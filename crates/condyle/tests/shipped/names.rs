@@ -34,7 +34,7 @@ fn same(name: &str, copy: &Model, model: &Model) {
         let mut stored = model.defaults();
         for (id, c) in model.coordinate_ids().zip(model.coordinates()) {
             if let (Some(low), Some(high)) = (c.range.lower, c.range.upper) {
-                stored[model.stored_range(id).start] = low + (high - low) * share;
+                *model.value_mut(&mut stored, id) = low + (high - low) * share;
             }
         }
         program.evaluate(&stored, Mode::Open, &mut pose).expect("buffers of this program");

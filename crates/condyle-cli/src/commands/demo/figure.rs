@@ -314,13 +314,13 @@ pub(crate) fn walk(model: &Model, frames: usize, rate: f64) -> Motion {
             let coordinate = model.coordinate(id);
             if coordinate.follows.is_none() {
                 let value = stride(&coordinate.name, time);
-                let place = model.stored_range(id).start;
                 let moved = if coordinate.kind == CoordinateKind::Rotation {
                     value.to_radians()
                 } else {
                     value
                 };
-                stored[place] = coordinate.range.nearest(stored[place] + moved);
+                let value = model.value_mut(&mut stored, id);
+                *value = coordinate.range.nearest(*value + moved);
             }
         }
         motion.times.push(time);
@@ -457,7 +457,7 @@ mod tests {
         let mut lowest = f64::INFINITY;
         for frame in &motion.frames {
             for id in model.coordinate_ids() {
-                let value = frame[model.stored_range(id).start];
+                let value = model.value(&frame, id);
                 assert!(model.coordinate(id).range.distance(value) >= 0.0);
             }
             program.evaluate(frame, Mode::Open, &mut pose).unwrap();
@@ -474,7 +474,7 @@ mod tests {
         let mut pose = Pose::new(&program);
         let flexion = model.find_coordinate("knee_flexion_r").unwrap();
         let mut stored = model.defaults();
-        stored[model.stored_range(flexion).start] = 90f64.to_radians();
+        *model.value_mut(&mut stored, flexion) = 90f64.to_radians();
         program.evaluate(&stored, Mode::Open, &mut pose).unwrap();
         let [femur, patella] = ["femur_r", "patella_r"].map(|n| model.find_segment(n).unwrap());
         let place = pose.segment(femur).rigid_inverse() * pose.segment(patella).translation;
