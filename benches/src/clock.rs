@@ -9,9 +9,9 @@ const BUDGET: Duration = Duration::from_millis(700);
 /// the time slices that other programs take.
 const BATCH: Duration = Duration::from_micros(500);
 
-/// Nanoseconds of one call: the fastest of many batches, which is the time nobody disturbed.
+/// Nanoseconds of one call: the fastest of many batches, the one least disturbed by other processes.
 ///
-/// `call` hears the number of the call, so that it can walk through different inputs.
+/// `call` is given the number of the call, so that it can walk through different inputs.
 pub fn nanoseconds(mut call: impl FnMut(usize)) -> f64 {
     let start = Instant::now();
     let mut calls = 0;

@@ -81,7 +81,7 @@ impl Workspace {
 
 impl Drop for Workspace {
     fn drop(&mut self) {
-        // What stays behind in a temporary folder harms nobody.
+        // A temporary folder that cannot be removed does no harm.
         let _ = std::fs::remove_dir_all(&self.root);
     }
 }

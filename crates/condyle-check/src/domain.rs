@@ -1,6 +1,6 @@
 //! Functions of knots, and the arguments that ranges let them have.
 //!
-//! Beyond its last knot a spline goes on straight, which is nobody's measurement: the range of the
+//! Beyond its last knot a spline is extrapolated linearly, where nothing was measured: the range of the
 //! coordinate that drives it promises more than the function knows.
 
 use super::{Inspected, amount, finding};

@@ -60,7 +60,7 @@ pub fn counts(finding: &Diagnostic) -> bool {
     finding.severity > Severity::Note
 }
 
-/// All findings about a model, and what its reader wondered about; the worst first.
+/// All findings about a model and the warnings of its reader, the worst first.
 ///
 /// ```
 /// use condyle_math::Vec3;

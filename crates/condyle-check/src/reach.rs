@@ -174,7 +174,7 @@ impl<'m> Reach<'m> {
     }
 
     /// The values of a scalar while its leaders run through their declared ranges, locked ones
-    /// standing at their defaults; none if a leader has no range, or if it is no law of scalars.
+    /// at their defaults; `None` if a leader has no range or the law is not one of scalars.
     pub(super) fn taken(&self, source: Signal) -> Option<Taken> {
         let leaders = self.leaders(source);
         if leaders.len() > MOST_LEADERS || !self.finished() {

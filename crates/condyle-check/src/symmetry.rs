@@ -1,6 +1,6 @@
 //! Left against right.
 //!
-//! Sides are told by names: `knee_r` and `knee_l`, `r_knee`, `RightKnee`, `knee.R`. A body is
+//! Sides are recognised by names: `knee_r` and `knee_l`, `r_knee`, `RightKnee`, `knee.R`. A body is
 //! mirrored in a plane of its segments' own frames, mostly the one across the third axis; the plane
 //! that fits most pairs is taken, and where none fits most of them nothing is said about places and
 //! axes. A mirrored axis of rotation is turned over as well, so that an equal angle is an equal
@@ -283,7 +283,7 @@ impl<'s> Motions<'s> {
         (v.norm() > 1e-6).then(|| v.normalized())
     }
 
-    /// For each pair whether the left coordinate counts the same way; none where it is unknown.
+    /// For each pair whether the left coordinate counts the same way; `None` where it is unknown.
     fn axes(
         &self,
         plane: usize,

@@ -139,7 +139,7 @@ fn unusable_input_is_2() {
     }
 }
 
-/// The folder of shared data beside the repository; none where it is absent.
+/// The folder of shared data beside the repository; `None` where it is absent.
 fn data() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     if folder.is_dir() {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use condyle_formats::opensim::setup::{self, CoordinateTarget, IkTasks};
 use condyle_formats::{AngleUnit, LengthUnit, XmlDocument, sto, trc};
 
-/// The folder of shared data beside the repository; none where it is absent.
+/// The folder of shared data beside the repository; `None` where it is absent.
 fn data() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     if folder.is_dir() {

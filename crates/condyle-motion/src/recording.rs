@@ -103,7 +103,7 @@ impl Recording {
         self.labels.iter().position(|l| l == label)
     }
 
-    /// A marker's position in a frame, in metres; none if it was not seen or there is no such
+    /// A marker's position in a frame, in metres; `None` if it was not seen or there is no such
     /// marker or frame.
     #[must_use]
     pub fn position(&self, frame: usize, marker: usize) -> Option<[f64; 3]> {
@@ -184,7 +184,7 @@ impl Recording {
     }
 }
 
-/// The longest side of the box around the markers of a frame; none for fewer than two.
+/// The longest side of the box around the markers of a frame; `None` for fewer than two.
 fn side_of_box(frame: &[Observed]) -> Option<f64> {
     let mut seen = 0;
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);

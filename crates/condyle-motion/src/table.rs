@@ -65,7 +65,7 @@ impl Table {
             .unwrap_or_default()
     }
 
-    /// One cell; none if there is no such row or column.
+    /// One cell; `None` if there is no such row or column.
     #[must_use]
     pub fn value(&self, row: usize, column: usize) -> Option<f64> {
         self.row(row).get(column).copied()

@@ -1,6 +1,6 @@
 //! Markers that cannot be where the recording says.
 //!
-//! Two kinds of fault are told from noise. A marker far off where the others agree is weighed down
+//! Two kinds of fault are distinguished from noise. A marker far off where the others agree is weighted down
 //! by Geman and McClure's factor 1/(1 + (e/s)²)², with s from the median error of its frame. Two
 //! labels that stand for each other's marker are found because each fits the other's place: they
 //! are reported, put right, and the frames solved again.
@@ -20,7 +20,7 @@ const SUSPECT: f64 = 4.0;
 /// A swap must leave less than this share of the two squared errors.
 const SWAP_GAIN: f64 = 0.2;
 
-/// Shortest run of frames, and longest hole in one, for a swap to be believed.
+/// Shortest run of frames, and longest hole in it, that counts as a swap.
 const SHORTEST_RUN: usize = 2;
 const LONGEST_HOLE: usize = 5;
 
@@ -100,7 +100,7 @@ pub fn find_exchanged(
     runs(found)
 }
 
-/// Joins frames of one pair into runs over small holes, and drops runs too short to believe.
+/// Joins frames of one pair into runs over small holes, and drops runs that are too short.
 fn runs(mut found: Vec<([usize; 2], usize)>) -> Vec<Exchanged> {
     found.sort_unstable();
     let mut runs: Vec<Exchanged> = vec![];

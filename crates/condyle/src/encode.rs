@@ -12,7 +12,7 @@ use condyle_model::Model;
 use condyle_motion::{AngleUnit, Motion, Recording, Table};
 
 /// A motion of a model: a table in degrees, a CSV in radians and metres, or a scene of plain bones in
-/// which recorded markers may stand beside the model's.
+/// which recorded markers are shown beside the model's.
 ///
 /// `markers` gives a recording and which of its labels are shown.
 ///

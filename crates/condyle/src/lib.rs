@@ -8,7 +8,7 @@
 //! # Load a file
 //!
 //! [`open`] reads a file of any format by its ending or its content, and the name of a [`shipped`]
-//! model does as well. What was odd comes back as [`Diagnostic`]s beside the value; nothing prints.
+//! model does as well. Warnings come back as [`Diagnostic`]s beside the value; nothing is printed.
 //!
 //! ```
 //! use condyle::open;
@@ -222,7 +222,7 @@
 //! program.evaluate(&[170f64.to_radians()], Mode::Posed, &mut pose)?;
 //! assert!((pose.effective()[0] - 140f64.to_radians()).abs() < 1e-15);
 //!
-//! let wrong = text.replace("axis", "axes");
+//! let wrong = text.replace("axis", "axsi");
 //! let error = document::read(&wrong, &mut |_| Err("alone".into())).unwrap_err();
 //! assert!(error.iter().any(|said| said.help == "did you mean `axis`?"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -88,7 +88,7 @@ pub struct Scaled {
     pub posture: Vec<f64>,
     /// How the search for the posture ended.
     pub status: FrameStatus,
-    /// What was odd.
+    /// Warnings.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -210,7 +210,8 @@ pub fn fit(
     }
     if model.components().iter().any(|c| matches!(c.component, Component::Custom(_))) {
         let said = Diagnostic::warning("scale/custom", "laws of kind `custom` keep their lengths");
-        warnings.push(said.with_help("nobody but their author knows which of their numbers are"));
+        warnings
+            .push(said.with_help("only their author knows which of their parameters are lengths"));
     }
     let mut search = Search::new(model, &standing, assumed);
     let before = search.first(&vec![0.0; search.len()]);

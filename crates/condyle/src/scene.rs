@@ -20,7 +20,7 @@ pub fn scene(model: &Model, motion: &Motion, markers: Option<(&Recording, &[usiz
 /// every joint.
 ///
 /// Segments keep their names and their tree, so the file can be driven further in Blender: joint
-/// sets are worked out, and what is left are plain bones, each with its place, turn and size in its
+/// sets are evaluated, and the result is plain bones, each with its place, turn and size in its
 /// parent at every time. In posed mode limits hold. Without frames the model stands at its defaults.
 ///
 /// # Warnings

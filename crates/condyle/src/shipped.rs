@@ -51,8 +51,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     MODELS.iter().map(|(name, _)| *name)
 }
 
-/// The text of a shipped model as it was written, comments and all; none if there is none of that
-/// name.
+/// The text of a shipped model as it was written, with its comments; `None` if no model has that name.
 pub fn text(name: &str) -> Option<&'static str> {
     MODELS.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }

@@ -347,7 +347,7 @@ fn a_wrong_unit_ends_at_a_bound_and_is_said() {
     assert!(scaled.warnings.iter().any(|w| w.code == "scale/bound"), "{:?}", scaled.warnings);
 }
 
-/// The folder of shared data beside the repository; none where it is absent.
+/// The folder of shared data beside the repository; `None` where it is absent.
 fn data() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     if folder.is_dir() {

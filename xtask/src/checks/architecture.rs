@@ -2,7 +2,7 @@
 //! is, each crate uses only crates above it, and the crates of the core keep their hands off files,
 //! threads and clocks, and off crates of others.
 //!
-//! What is core is told by the map alone: the crates that stand above [`FIRST_BEYOND_CORE`] in its
+//! The map alone defines the core: the crates that stand above [`FIRST_BEYOND_CORE`] in its
 //! table. A map from which that cannot be told fails.
 
 mod map;

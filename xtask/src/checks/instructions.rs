@@ -135,7 +135,7 @@ fn count(program: &Path, kernel: &str, repeats: u64) -> Result<u64, String> {
     command.stdout(Stdio::null()).stderr(Stdio::null());
     let status = command.status().map_err(|error| format!("valgrind: {error}"))?;
     let text = std::fs::read_to_string(&file);
-    // The file is ours alone; one that stays behind harms nobody.
+    // The name is unique; a file that cannot be removed does no harm.
     let _ = std::fs::remove_file(&file);
     if !status.success() {
         return Err(format!("valgrind ended with {status} on {kernel}"));

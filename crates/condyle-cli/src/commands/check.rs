@@ -116,7 +116,7 @@ fn grouped(text: &mut String, findings: &[Diagnostic]) {
             findings.iter().filter(|f| (f.severity, f.code) == (severity, code)).collect();
         own.sort_by_key(|f| own_order(findings, &f.help));
         for same in own.chunk_by(|a, b| a.help == b.help) {
-            // A list of thirty alike is read by nobody.
+            // Long lists of similar findings are cut short.
             let shown = if same.len() > MOST_ALIKE + 1 { MOST_ALIKE } else { same.len() };
             for finding in &same[..shown] {
                 let _ = writeln!(text, "  {}", placed(finding));

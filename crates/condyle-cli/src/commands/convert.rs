@@ -20,14 +20,14 @@ pub(crate) struct Convert {
     output: PathBuf,
     /// The model that a motion belongs to: a file, or the name of a shipped one.
     ///
-    /// With it a motion can be baked to .glb: plain bones, each with its place, turn and size in its
-    /// parent at every frame, for programs that know no joint sets.
+    /// With it a motion can be baked to .glb: plain bones, each with its translation, rotation and
+    /// scale in its parent at every frame, for programs without joint sets.
     #[arg(long, value_name = "M")]
     model: Option<PathBuf>,
     /// First move coordinates to the nearest posture that the model allows.
     #[arg(long, value_enum, default_value_t = Limits::Off)]
     limits: Limits,
-    /// The format of the output, if not by its ending.
+    /// The format of the output; by default that of its ending.
     #[arg(long, value_parser = format::names(&WRITTEN))]
     to: Option<String>,
 }

@@ -15,7 +15,7 @@ pub(crate) struct Diff {
     a: PathBuf,
     /// Another motion; interpolated linearly between its frames.
     b: PathBuf,
-    /// The model of both: tells rotations, which are then compared in degrees.
+    /// The model of both; with it rotations are known, and compared in degrees.
     #[arg(long, value_name = "M")]
     model: Option<PathBuf>,
     /// One JSON document on standard output.

@@ -23,15 +23,15 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Say what is in a file: segments and coordinates, or markers, frames and gaps.
+    /// Show what a file contains: segments and coordinates, or markers, frames and gaps.
     Info(info::Info),
-    /// Find what is odd in a model, and where a motion leaves its limits.
+    /// Report inconsistencies of a model, and where a motion exceeds its limits.
     Check(check::Check),
     /// Pose a model: world transforms of all segments.
     Fk(fk::Fk),
     /// Find the motion of a model that follows recorded markers.
     Track(track::Track),
-    /// Make a model as large as the person of a static trial.
+    /// Scale a model to the person of a static trial.
     Scale(scale::Scale),
     /// Write a file in another format.
     Convert(convert::Convert),
@@ -39,7 +39,7 @@ enum Command {
     Diff(diff::Diff),
     /// Measure how fast a model is posed on this machine.
     Bench(bench::Bench),
-    /// The whole story on a recording made from a known motion.
+    /// Track a recording made from a known motion, and report the errors.
     Demo(demo::Demo),
 }
 

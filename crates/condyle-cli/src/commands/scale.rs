@@ -15,7 +15,7 @@ const SHOWN: usize = 5;
 
 #[derive(Debug, Args)]
 pub(crate) struct Scale {
-    /// The model; its size groups are what grows together.
+    /// The model; each of its size groups has one scale factor.
     model: PathBuf,
     /// A marker recording of the person standing still.
     #[arg(long = "static", value_name = "TRIAL")]
@@ -23,13 +23,13 @@ pub(crate) struct Scale {
     /// The scaled model, a document (.toml), or `-`.
     #[arg(short, long, value_name = "SUBJECT.toml")]
     output: PathBuf,
-    /// Leave markers where the scaled model has them, instead of where they were seen.
+    /// Keep the markers of the scaled model instead of moving them to where they were recorded.
     #[arg(long)]
     keep_markers: bool,
     /// A setup of OpenSim's scaling; not read yet.
     #[arg(long, value_name = "SCALE.xml")]
     setup: Option<PathBuf>,
-    /// The figures as one JSON document on standard output.
+    /// The results as one JSON document on standard output.
     #[arg(long)]
     json: bool,
 }
@@ -38,8 +38,8 @@ impl Scale {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
         if let Some(setup) = &self.setup {
             return Err(Failure::new(format!(
-                "{}: setups of OpenSim's scaling are not read; leave --setup away: the groups that \
-                 grow together are tables [size.…] of the model",
+                "{}: setups of OpenSim's scaling are not read; omit --setup: the groups of segments \
+                 that are scaled together are tables [size.…] of the model",
                 setup.display()
             )));
         }

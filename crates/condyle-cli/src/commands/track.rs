@@ -24,25 +24,25 @@ pub(crate) struct Track {
     /// Weights, coordinate tasks and time range: a setup of OpenSim's inverse kinematics.
     #[arg(long, value_name = "IK.xml")]
     setup: Option<PathBuf>,
-    /// The motion: .mot, .sto, .csv or .glb, `-`, or a folder (a must for several recordings).
+    /// The motion: .mot, .sto, .csv or .glb, `-`, or a folder (required with several recordings).
     #[arg(short, long)]
     output: Option<PathBuf>,
-    /// The format of the motion, if not by the ending.
+    /// The format of the motion; by default that of the file's ending.
     #[arg(long, value_parser = motion_format::motions())]
     to: Option<String>,
     /// Marker errors as a table: time, marker, error in metres.
     #[arg(long, value_name = "E.csv")]
     errors: Option<PathBuf>,
-    /// Numbers about the whole tracking, as JSON.
+    /// A summary of the tracking, as JSON.
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
-    /// How many threads solve; as many as there are cores if not given.
+    /// Number of solver threads; all cores by default.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     /// Hold coordinates to their enforced ranges.
     #[arg(long, value_enum, default_value_t = Limits::On)]
     limits: Limits,
-    /// Find swapped labels, and weigh markers down that are far off where others agree.
+    /// Detect swapped labels, and reduce the weight of markers that contradict the others.
     #[arg(long)]
     robust: bool,
     /// The report as one JSON document on standard output.

@@ -4,7 +4,7 @@
 //! S, as T·R·S. Of a linear map L the polar decomposition L = Q·P gives the rotation Q that is
 //! nearest to it and a symmetric stretch P (Higham 1986, *Computing the polar decomposition*). R is
 //! Q and S the diagonal of P, which is exact where L stretches along the node's axes alone. What
-//! stands beside the diagonal is a shear, which a node cannot hold.
+//! is off the diagonal is a shear, which a node cannot hold.
 
 use super::scene::LocalPose;
 use condyle_math::{Affine, Mat3, Quat, Vec3};

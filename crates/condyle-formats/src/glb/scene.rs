@@ -40,7 +40,7 @@ impl Default for LocalPose {
 pub struct SceneNode {
     /// Shown in viewers.
     pub name: String,
-    /// Index of an earlier node; none for a root.
+    /// Index of an earlier node; `None` for a root.
     pub parent: Option<usize>,
     /// Where the node is while no track moves it.
     pub rest: LocalPose,

@@ -153,7 +153,7 @@ fn check_pose(pose: &LocalPose, name: &str, when: &str) -> Result<(), Error> {
         .with_help("places and sizes are finite, a rotation is a unit quaternion x, y, z, w"))
 }
 
-/// A quaternion made of length 1; none if it has no length.
+/// The quaternion normalised to length 1; `None` if its length is 0.
 fn unit(q: [f64; 4]) -> Option<[f32; 4]> {
     let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
     (length.is_finite() && length > 1e-6).then(|| q.map(|x| (x / length) as f32))

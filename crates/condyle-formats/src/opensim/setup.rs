@@ -7,7 +7,7 @@
 use crate::xml::{Element, XmlDocument};
 use condyle_diagnostics::{Diagnostic, Error, Read, Warnings, nearest};
 
-/// What an inverse kinematics run is told to do.
+/// The settings of an inverse kinematics run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IkSetup {
     /// The tool's name; may be empty.
@@ -20,7 +20,7 @@ pub struct IkSetup {
     pub coordinate_file: Option<String>,
     /// Where the answer goes, as written.
     pub output_motion_file: Option<String>,
-    /// First and last time to solve, in seconds, either of which may be infinite; none for all of
+    /// First and last time to solve, in seconds, either of which may be infinite; `None` for all of
     /// the recording.
     pub time_range: Option<[f64; 2]>,
     /// The weight of constraint errors; infinite, the default, if they must not be.
@@ -262,7 +262,7 @@ fn time_range(tool: Element<'_>) -> Result<Option<[f64; 2]>, Error> {
         .with_help("write the first and the last time in seconds"))
 }
 
-/// A child's weight; none if there is no such child or it is blank.
+/// A child's weight; `None` if there is no such child or it is blank.
 fn weight(element: Element<'_>, name: &str) -> Result<Option<f64>, Error> {
     let Some(child) = element.child(name) else { return Ok(None) };
     if assigned(child.text()).is_none() {

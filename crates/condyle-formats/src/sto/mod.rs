@@ -12,8 +12,8 @@
 //! - `inDegrees=yes|no`, in any case, says what rotations are in. A header with the keys of SIMM
 //!   (`datacolumns`, `datarows`, `otherdata`, `range`) and without `inDegrees` means degrees, as
 //!   does the sentence `Angles are in degrees`. Otherwise the unit is
-//!   [`Unstated`](crate::AngleUnit::Unstated). A file that contradicts itself is believed by its
-//!   key, with a warning.
+//!   [`Unstated`](crate::AngleUnit::Unstated). Where the two
+//!   contradict each other the key decides, with a warning.
 //! - Cells of several numbers (`DataType=Vec3`, `Quaternion`) become columns `name_1`, `name_2`,
 //!   ... in the order of the file (OpenSim's quaternions are w, x, y, z), with a warning.
 //! - Blank cells and rows that end early are NaN; a row with too many cells is an error.

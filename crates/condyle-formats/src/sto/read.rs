@@ -7,7 +7,7 @@ use crate::text::{Line, check_size, last_line, lines, number, read_decoded};
 use condyle_diagnostics::{Diagnostic, Error, Place, Read, Warnings};
 use condyle_motion::Table;
 
-/// How cells are told apart.
+/// How cells are separated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Delimiter {
     Tab,

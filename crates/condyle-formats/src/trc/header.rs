@@ -4,7 +4,7 @@ use crate::text::{Line, number};
 use condyle_diagnostics::{Diagnostic, Error, Place, Warnings};
 use condyle_motion::LengthUnit;
 
-/// How cells are told apart.
+/// How cells are separated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Delimiter {
     Tab,

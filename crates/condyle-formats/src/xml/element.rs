@@ -74,7 +74,7 @@ impl<'d> Element<'d> {
         Error::new(code, message).at(self.place())
     }
 
-    /// The element around this one; none for the root.
+    /// The element around this one; `None` for the root.
     #[must_use]
     pub fn parent(self) -> Option<Self> {
         self.node().and_then(|n| self.other(n.parent))
@@ -171,7 +171,7 @@ impl<'d> Element<'d> {
         self.node().map_or("", |n| self.document.slice(n.text))
     }
 
-    /// The text of a child; none if there is no such child or it is blank.
+    /// The text of a child; `None` if there is no such child or it is blank.
     #[must_use]
     pub fn child_text(self, name: &str) -> Option<&'d str> {
         self.child(name).map(Self::text).filter(|text| !text.is_empty())
@@ -240,7 +240,7 @@ impl<'d> Element<'d> {
         }
     }
 
-    /// A child's number; none if there is no such child or it is blank.
+    /// A child's number; `None` if there is no such child or it is blank.
     ///
     /// # Errors
     ///
@@ -249,7 +249,7 @@ impl<'d> Element<'d> {
         self.filled(name).map(Self::f64).transpose()
     }
 
-    /// A child's numbers; none if there is no such child or it is blank.
+    /// A child's numbers; `None` if there is no such child or it is blank.
     ///
     /// # Errors
     ///
@@ -258,7 +258,7 @@ impl<'d> Element<'d> {
         self.filled(name).map(Self::numbers).transpose()
     }
 
-    /// A child's truth; none if there is no such child or it is blank.
+    /// A child's truth; `None` if there is no such child or it is blank.
     ///
     /// # Errors
     ///

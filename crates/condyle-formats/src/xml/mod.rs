@@ -5,7 +5,7 @@
 //! elements, more than [`MAX_NODES`] nodes, more than 512 MiB. Names are without their prefix.
 //!
 //! Files that are nearly XML are repaired first, with a warning for each repair: colons in names
-//! whose prefix nobody declared become `_` (`HuntCrossleyForce::ContactParametersSet` is read as
+//! with an undeclared prefix become `_` (`HuntCrossleyForce::ContactParametersSet` is read as
 //! `HuntCrossleyForce__ContactParametersSet`), and whatever precedes `<?xml`, comments that hold
 //! `--` and closing tags after the end are skipped.
 //!

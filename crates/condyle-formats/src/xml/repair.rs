@@ -3,7 +3,7 @@
 //!
 //! Repairs keep every byte where it was, so that places in messages are places in the file:
 //!
-//! - a colon in a name whose prefix nobody declared (`<HuntCrossleyForce::ContactParametersSet>`,
+//! - a colon in a name with an undeclared prefix (`<HuntCrossleyForce::ContactParametersSet>`,
 //!   in 9 of 60 official OpenSim models) becomes `_`;
 //! - whatever stands before `<?xml`, and that declaration itself, becomes spaces;
 //! - a comment that holds `--` becomes spaces, and so does a closing tag that closes nothing
@@ -38,7 +38,7 @@ pub(super) fn repair<'a>(text: &'a str, warnings: &mut Warnings) -> Result<Cow<'
         let place = places.at(name.start);
         warnings.add("xml/prefix", || {
             let written = text.get(name.clone()).unwrap_or_default();
-            Diagnostic::note("xml/prefix", format!("`{written}` has a prefix nobody declared"))
+            Diagnostic::note("xml/prefix", format!("`{written}` has an undeclared prefix"))
                 .at(place)
                 .with_help(format!("read as `{}`", written.replace(':', "_")))
         });

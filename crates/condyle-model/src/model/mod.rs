@@ -277,7 +277,7 @@ impl Model {
         }
     }
 
-    /// The segments below an ancestor down to a segment; none if it is no ancestor.
+    /// The segments below an ancestor down to a segment; `None` if it is no ancestor.
     pub(crate) fn path_between(&self, ancestor: SegmentId, segment: SegmentId) -> Vec<SegmentId> {
         let mut path = vec![];
         let mut here = Some(segment);

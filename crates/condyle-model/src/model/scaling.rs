@@ -126,7 +126,7 @@ impl Model {
         Self { name: name.to_owned(), ..self.clone() }
     }
 
-    /// For each component the parent of the first segment that it moves; none if it moves nothing.
+    /// For each component the parent of the first segment that it moves; `None` if it moves nothing.
     fn joints_of_components(&self) -> Vec<Option<Option<SegmentId>>> {
         let mut found = vec![None; self.components.len()];
         for segment in &self.segments {

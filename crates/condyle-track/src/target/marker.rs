@@ -26,7 +26,7 @@ pub(crate) struct Placed {
     pub weight: f64,
     point: Vec3,
     segment: Option<SegmentId>,
-    /// Position among the groups; none for markers of the world, which nothing moves.
+    /// Position among the groups; `None` for markers of the world, which nothing moves.
     group: Option<usize>,
 }
 

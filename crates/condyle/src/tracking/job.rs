@@ -76,7 +76,7 @@ impl<'a> Job<'a> {
     }
 
     /// Tracks all frames; with a robust request, once more with exchanged labels put right.
-    /// `progress` hears how many frames of how many are done.
+    /// `progress` is called with the number of frames that are done and their total.
     ///
     /// Frames that cannot be solved are marked in their answer.
     pub fn run(&self, mut progress: &mut (dyn FnMut(usize, usize) + Send)) -> Tracking {

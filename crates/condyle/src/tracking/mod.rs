@@ -33,7 +33,7 @@ pub struct Tracking {
     pub labels: Vec<usize>,
     /// The recording's frames that were tracked.
     pub frames: std::ops::Range<usize>,
-    /// What was odd.
+    /// Warnings: guessed marker names, targets that are ignored.
     pub warnings: Vec<Diagnostic>,
     /// Labels that were found exchanged, by frame range (robust tracking only).
     pub swaps: Vec<Swap>,
@@ -48,7 +48,8 @@ pub struct Swap {
     pub frames: std::ops::Range<usize>,
 }
 
-/// Tracks a recording; `progress` hears how many frames of how many are done.
+/// Tracks a recording; `progress` is called with the number of frames that are done and
+/// their total.
 ///
 /// # Errors
 /// Those of [`Job::new`], if there is nothing to track. Frames that cannot be solved are marked in

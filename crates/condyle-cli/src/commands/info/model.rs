@@ -78,7 +78,7 @@ fn keys(model: &Model) -> Vec<String> {
     model.coordinate_ids().map(|id| model.coordinate_key(id)).collect()
 }
 
-/// The coordinates that a coupled one follows; none for one that follows nothing.
+/// The coordinates that a coupled one follows; `None` for one that follows nothing.
 fn leader_keys<'k>(model: &Model, id: CoordinateId, keys: &'k [String]) -> Vec<&'k str> {
     let mut leaders = vec![];
     let mut seen = HashSet::new();

@@ -15,7 +15,7 @@ fn unit(table: &Table) -> &'static str {
     }
 }
 
-/// The least and the greatest number of a column; none if it holds no number.
+/// The least and the greatest number of a column; `None` if it has no number.
 fn extremes(table: &Table, column: usize) -> Option<[f64; 2]> {
     table.series(column).filter(|v| !v.is_nan()).fold(None, |found, v| match found {
         None => Some([v, v]),

@@ -120,7 +120,7 @@ impl Quartic {
         self.constant.abs() + first + self.cos2.abs() + self.sin2.abs() < 1e100
     }
 
-    /// All roots: none, two or four, unordered; none if f is constant.
+    /// All roots: none, two or four, unordered; `None` if f is constant.
     #[inline]
     pub(super) fn roots(&self) -> Turns {
         if self.is_constant() {

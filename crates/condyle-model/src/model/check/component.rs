@@ -170,7 +170,7 @@ fn check_cone(place: &Part, cone: &JointCone, findings: &mut Vec<Diagnostic>) {
             "model/cone-twist",
             place.subject.clone(),
             format!("{place} has bounds of twist but only two angles"),
-            "give it a third angle, or leave the bounds away",
+            "give it a third angle, or omit the bounds",
         ));
     }
 }
