@@ -58,7 +58,7 @@ impl Fk {
             for id in model.coordinate_ids() {
                 let named = requests.named.get(index).is_none_or(|n| n[id.index()]);
                 if named && model.coordinate(id).follows.is_some() {
-                    let asked = model.value(&stored, id);
+                    let asked = model.value(stored, id);
                     let got = pose.coordinate(&model, id)[0];
                     if (asked - got).abs() > COUPLING_TOLERANCE {
                         ignored[id.index()] += 1;

@@ -457,7 +457,7 @@ mod tests {
         let mut lowest = f64::INFINITY;
         for frame in &motion.frames {
             for id in model.coordinate_ids() {
-                let value = model.value(&frame, id);
+                let value = model.value(frame, id);
                 assert!(model.coordinate(id).range.distance(value) >= 0.0);
             }
             program.evaluate(frame, Mode::Open, &mut pose).unwrap();
