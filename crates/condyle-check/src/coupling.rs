@@ -53,7 +53,7 @@ fn range_left(subject: &Inspected<'_>, id: CoordinateId, source: Signal) -> Opti
         "lint/follower-range",
         subjects.into_iter().map(Subject::Coordinate),
         format!(
-            "`{key}` follows to {} at {}, {} past its limit {}{from}",
+            "`{key}` is driven to {} at {}, {} past its limit {}{from}",
             subject.shown(id, *worst),
             posture.join(", "),
             subject.shown(id, outside(*worst)),
@@ -91,7 +91,7 @@ fn default_ignored(subject: &Inspected<'_>, id: CoordinateId) -> Option<Diagnost
             subject.shown(id, stated),
             subject.shown(id, made)
         ),
-        "write the value that it has, so that readers of the file are not misled",
+        "write the value that it takes, so that other programs are not misled",
     ))
 }
 
@@ -163,7 +163,7 @@ fn idle(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
             "lint/moves-nothing",
             [Subject::Coordinate(key.clone())],
             format!("`{key}` moves no segment{also}"),
-            "let an axis of its joint use it, or take it out",
+            "let an axis of its joint use it, or remove it",
         ));
     }
 }

@@ -90,8 +90,8 @@ pub fn check(model: &Model, warnings: &[Diagnostic]) -> Vec<Diagnostic> {
             Severity::Note,
             "lint/unfinished",
             [],
-            "couplings are so many that some were not followed through their leaders' ranges",
-            "what is said about knots and followers may not be all",
+            "there are so many couplings that some were not evaluated over their leaders' ranges",
+            "findings about knots and followers may be incomplete",
         ));
     }
     findings.sort_by_key(|finding| std::cmp::Reverse(finding.severity));

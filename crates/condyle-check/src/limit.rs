@@ -34,11 +34,8 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
                 Severity::Warning,
                 "lint/no-contact",
                 [model.component_subject(named)],
-                format!(
-                    "contact `{name}` stays {} {side} its ellipsoid at rest",
-                    length(gap.abs())
-                ),
-                "move its points or its ellipsoid until they meet, or accept that it floats",
+                format!("contact `{name}` is {} {side} its ellipsoid at rest", length(gap.abs())),
+                "move its points or its ellipsoid until they meet, or accept the gap",
             ));
         }
     }
@@ -81,9 +78,9 @@ fn jump(subject: &Inspected<'_>, name: &str, cone: &JointCone) -> Option<Diagnos
         "lint/cone-jump",
         ranges.iter().map(|(id, _)| Subject::Coordinate(subject.key(*id))),
         format!(
-            "what cone `{name}` makes of illegal angles jumps inside the declared ranges, near {}",
+            "the projection of cone `{name}` is discontinuous inside the declared ranges, near {}",
             at.collect::<Vec<_>>().join(", ")
         ),
-        "narrow the ranges so that they end nearer to the cone, or take projection = \"toward_rest\"",
+        "narrow the ranges so that they end nearer to the cone, or use projection = \"toward_rest\"",
     ))
 }

@@ -430,7 +430,7 @@ impl MotionCheck {
                     shown(d.coordinate, d.value),
                     shown(d.coordinate, d.expected)
                 ),
-                "programs that play the column as it is will show another posture",
+                "programs that use the column as it is will show another posture",
             ));
         }
         for open in &self.open_loops {

@@ -47,7 +47,7 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
                 "lint/alike-names",
                 names.iter().cloned().map(of),
                 format!("the {what} {} differ by case or spaces only", super::listed(&names)),
-                "give them names that differ: labels are matched ignoring case",
+                "give them different names: labels are matched ignoring case",
             ));
         }
     }

@@ -78,7 +78,7 @@ fn twins(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
             Severity::Note,
             "lint/marker-twins",
             names.iter().cloned().map(Subject::Marker),
-            format!("markers {} of `{segment}` are in one place", super::listed(&names)),
+            format!("markers {} of `{segment}` are at the same point", super::listed(&names)),
             "give each its own place, or keep one",
         ));
     }

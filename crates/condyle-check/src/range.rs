@@ -83,9 +83,11 @@ fn size(subject: &Inspected<'_>, id: CoordinateId) -> Option<Diagnostic> {
         [Subject::Coordinate(key.clone())],
         format!("the range of `{key}`, {text}{unit}, limits nothing"),
         match (follows, harmless) {
-            (true, _) => "a coordinate that follows needs no range; leave it out",
-            (false, true) => "nothing is held to it, as it is not clamped; leave it out",
-            (false, false) => "it is clamped to no limit: give a real one, or do not clamp it",
+            (true, _) => "a coordinate that follows needs no range; omit it",
+            (false, true) => "it is not clamped, so the range has no effect; omit it",
+            (false, false) => {
+                "it is clamped, but the range does not limit it: give a real range, or do not clamp it"
+            }
         },
     ))
 }

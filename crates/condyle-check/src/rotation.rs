@@ -90,11 +90,11 @@ fn parallel(subject: &Inspected<'_>, set: &str, a: &Turn, b: &Turn) -> Option<Di
         "lint/parallel-axes",
         names.iter().cloned().map(Subject::Coordinate),
         format!(
-            "two axes of joint `{set}` ({}) lie {}° apart: they do nearly the same",
+            "two axes of joint `{set}` ({}) are only {}° apart: they are nearly the same axis",
             super::listed(&names),
             super::rounded(angle, 2)
         ),
-        "choose axes that stand apart, or take one of the two out",
+        "choose axes that differ more, or remove one of the two",
     ))
 }
 
@@ -137,6 +137,6 @@ fn singular(subject: &Inspected<'_>, set: &str, triple: &[Turn]) -> Option<Diagn
             "the three rotations of joint `{set}` lose a direction where {middle} makes {shown}°, \
              which lies inside its range"
         ),
-        "near that posture the outer two angles are not determined apart; read them together",
+        "near that posture only the sum or difference of the outer two angles is determined",
     ))
 }

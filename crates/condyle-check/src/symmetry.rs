@@ -231,7 +231,7 @@ impl<'s> Motions<'s> {
                 "lint/same-side",
                 [name(right), name(left)].map(Subject::Segment),
                 format!(
-                    "the joints of `{}` and `{}` stand in the same place of their parents: the left \
+                    "the joints of `{}` and `{}` are at the same place in their parents: the left \
                      one is {} from the mirror of the right one",
                     name(right),
                     name(left),
@@ -247,7 +247,7 @@ impl<'s> Motions<'s> {
             "lint/uneven-places",
             differ.iter().map(|(_, name)| Subject::Segment(name.clone())),
             format!(
-                "{} of {} joints stand elsewhere than their other side's mirror; most of all that \
+                "{} of {} joints are not the mirror image of the other side's; the largest difference is that \
                  of `{worst}`, by {}",
                 differ.len(),
                 pairs.len(),
@@ -322,7 +322,7 @@ impl<'s> Motions<'s> {
                 "lint/uneven-axes",
                 [right.clone(), left.clone()].map(Subject::Coordinate),
                 format!(
-                    "the axes of `{right}` and `{left}` are no mirror images: {}° apart",
+                    "the axes of `{right}` and `{left}` are not mirror images: {}° apart",
                     super::rounded(angle, 2)
                 ),
                 "mirror the axis: a sign is often forgotten",
@@ -422,7 +422,7 @@ fn defaults(
             differ.len(),
             pairs.len()
         ),
-        "fine for a model that rests in a stride; otherwise make them equal",
+        "correct for a model whose default posture is a stride; otherwise make them equal",
     ));
 }
 

@@ -156,7 +156,7 @@ fn finger(limit: f64, enforced: bool) -> ModelBuilder {
 fn followers_that_their_leaders_take_outside() {
     let finding = only(finger(70.0, true), Severity::Warning, "lint/follower-range");
     // Two thirds of 120° are 80°; 70° are left at 105°, sampled every half degree.
-    assert!(finding.message.contains("follows to 80° at `pip` = 120°, 10° past its limit 70°"));
+    assert!(finding.message.contains("is driven to 80° at `pip` = 120°, 10° past its limit 70°"));
     assert!(finding.message.ends_with("it leaves at 105.5°"), "{}", finding.message);
     only(finger(70.0, false), Severity::Note, "lint/follower-range");
     sound(finger(80.0, true));
@@ -218,7 +218,7 @@ fn axes_that_are_nearly_one() {
         Severity::Warning,
         "lint/parallel-axes",
     );
-    assert!(finding.message.contains("lie 4° apart"), "{}", finding.message);
+    assert!(finding.message.contains("are only 4° apart"), "{}", finding.message);
     assert_eq!(names(&finding), ["first", "second"]);
     let tilt = 6f64.to_radians();
     sound(triple([Vec3::Z, Vec3::new(tilt.sin(), 0.0, tilt.cos()), Vec3::Y], [-30.0, 30.0]));

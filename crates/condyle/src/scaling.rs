@@ -246,13 +246,15 @@ pub fn fit(
     for factor in std::iter::once(&body).chain(&groups) {
         let [least, most] = FACTORS;
         if factor.factor < least * (1.0 + 1e-6) || factor.factor > most * (1.0 - 1e-6) {
-            let message = format!("the factor of `{}` ends at {:.2}", factor.name, factor.factor);
+            let message =
+                format!("the factor of `{}` is at its bound {:.2}", factor.name, factor.factor);
             let said = Diagnostic::warning("scale/bound", message);
             warnings.push(said.with_help("is the unit of the recording right?"));
         }
     }
     if !best.answer.status.is_solved() {
-        let message = format!("the posture was not found for sure ({})", best.answer.status.name());
+        let message =
+            format!("the posture may not be the best one ({})", best.answer.status.name());
         warnings.push(Diagnostic::warning("scale/posture", message));
     }
     let used = |name: &String| markers.iter().any(|m| m.name == *name);

@@ -144,7 +144,7 @@ fn unused_tasks(weights: &HashMap<String, f64>, markers: &[String]) -> Option<Di
     let mut unused: Vec<String> = unused.map(|(name, _)| format!("`{name}`")).collect();
     unused.sort();
     let list = unused.join(", ");
-    let message = format!("tasks for markers that model or recording lack: {list}");
+    let message = format!("tasks for markers that are not in both model and recording: {list}");
     (!unused.is_empty()).then(|| Diagnostic::warning("track/unused-task", message))
 }
 

@@ -160,7 +160,7 @@ fn check_cone(place: &Part, cone: &JointCone, findings: &mut Vec<Diagnostic>) {
             "model/cone-axes",
             place.subject.clone(),
             format!("the second axis of {place} is not perpendicular to the others"),
-            "turn about such axes as z, x, y: the second at a right angle to the first and to the \
+            "use axes such as z, x, y: the second perpendicular to the first and to the \
              third (with two angles: to the rest direction)",
         ));
     }
@@ -195,7 +195,7 @@ fn check_curve(place: &Part, curve: &Curve, findings: &mut Vec<Diagnostic>) {
             "model/curve-heading",
             place.subject.clone(),
             format!(
-                "the curve of {place} stops, or runs along `up`, so its heading is undefined there"
+                "the curve of {place} has zero velocity or is parallel to `up` somewhere, so its heading is undefined there"
             ),
             "give another `up`, or a curve whose points differ",
         ));
@@ -281,11 +281,11 @@ fn check_compensate(
             "model/not-an-ancestor",
             place.subject.clone(),
             format!(
-                "{place} compensates `{}`, which is no ancestor of `{}`",
+                "{place} compensates `{}`, which is not an ancestor of `{}`",
                 model.segment(*id).name,
                 model.segment(c.segment).name
             ),
-            "name segments on the way from this one to the root",
+            "name ancestors of this segment",
         ));
     }
     for id in model.compensated_path(c) {
@@ -307,11 +307,11 @@ fn check_contact(
             "model/not-an-ancestor",
             place.subject.clone(),
             format!(
-                "{place} glides on `{}`, which is no ancestor of `{}`",
+                "{place} glides on `{}`, which is not an ancestor of `{}`",
                 model.segment(c.surface).name,
                 model.segment(c.segment).name
             ),
-            "name a segment on the way from this one to the root",
+            "name an ancestor of this segment",
         ));
     }
     for id in path {

@@ -113,7 +113,7 @@ fn check_segments(model: &Model, findings: &mut Vec<Diagnostic>) {
                     "model/segment-cycle",
                     Subject::Segment(names[0].to_owned()),
                     format!("segments are their own ancestors: {}", names.join(" -> ")),
-                    "let one of them hang on the world, or close the loop with a constraint",
+                    "give one of them no parent, or close the loop with a constraint",
                 ));
                 return;
             }
@@ -169,7 +169,7 @@ fn check_coordinates(model: &Model, findings: &mut Vec<Diagnostic>) {
                 "model/not-finite",
                 Subject::Coordinate(key.clone()),
                 format!("a limit of coordinate `{key}` is not a number"),
-                "leave a limit away where there is none",
+                "omit a limit that does not exist",
             ));
         } else if let (Some(lower), Some(upper)) = (lower, upper)
             && lower > upper
