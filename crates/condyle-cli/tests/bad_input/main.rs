@@ -101,8 +101,8 @@ fn models() {
             (
                 "frames.osim",
                 with("<socket_parent>/ground<", "<socket_parent>hip_place<"),
-                "6:22: frame `hip_place` never leads to a body (is it its own ancestor? let a \
-                 frame on the way be fixed in a body)",
+                "6:22: frame `hip_place` is not attached to a body (is it its own ancestor? \
+                 attach one of its ancestors to a body)",
             ),
             (
                 "unknown.osim",
@@ -257,7 +257,7 @@ fn recordings() {
             (
                 "furlong.trc",
                 with("\tmm\n", "\tfurlong\n"),
-                "3: `furlong` is no unit of length (write mm, cm, m, in or ft; guessed from the \
+                "3: `furlong` is not a unit of length (write mm, cm, m, in or ft; guessed from the \
                  size of the data)",
             ),
             (
@@ -268,7 +268,7 @@ fn recordings() {
             (
                 "markers.trc",
                 with("\t3\t6\t", "\t3\t7\t"),
-                "4: NumMarkers says 7, names there are 6 (the names are right)",
+                "4: NumMarkers is 7, but 6 names are given (the names are right)",
             ),
             (
                 "twice.trc",

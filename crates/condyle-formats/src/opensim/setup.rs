@@ -367,7 +367,7 @@ fn target(task: Element<'_>) -> Result<CoordinateTarget, Error> {
         _ => Err(task
             .child("value_type")
             .unwrap_or(task)
-            .error("setup/value-type", format!("`{kind}` is no kind of value"))
+            .error("setup/value-type", format!("`{kind}` is not a type of value"))
             .with_help("expected default_value, manual_value or from_file")),
     }
 }
@@ -455,7 +455,7 @@ mod tests {
             (
                 "<IKTaskSet><IKCoordinateTask name='a'><value_type>x</value_type>\
                  </IKCoordinateTask></IKTaskSet>",
-                "line 2, column 39: `x` is no kind of value",
+                "line 2, column 39: `x` is not a type of value",
             ),
         ] {
             let error = tool(text).unwrap_err().to_string();

@@ -41,7 +41,7 @@ pub(super) fn read<'a>(
             return Ok(header);
         }
         if text.len() > LONGEST {
-            return Err(Error::new("sto/no-endheader", "a line of the header has no end in sight")
+            return Err(Error::new("sto/no-endheader", "a line of the header is too long")
                 .at(line.place())
                 .with_help("is this a motion? write `endheader` before the line of names"));
         }

@@ -128,7 +128,7 @@ fn unit_of(name: Option<&str>, line: Line<'_>, warnings: &mut Warnings) -> Optio
     let unit = name.and_then(LengthUnit::from_name);
     if unit.is_none() {
         let message = match name {
-            Some(name) if number(name).is_none() => format!("`{name}` is no unit of length"),
+            Some(name) if number(name).is_none() => format!("`{name}` is not a unit of length"),
             _ => "the header has no unit of length".to_owned(),
         };
         warnings.add("trc/unit", || {
@@ -196,7 +196,7 @@ fn labels<'a>(
         warnings.push(
             Diagnostic::warning(
                 "trc/marker-count",
-                format!("NumMarkers says {declared}, names there are {}", named.len()),
+                format!("NumMarkers is {declared}, but {} names are given", named.len()),
             )
             .at(label_line.place())
             .with_help("the names are right"),

@@ -74,7 +74,7 @@ impl Blank {
     fn warning(self) -> Diagnostic {
         let (message, help) = match self {
             Self::BeforeDeclaration => {
-                ("the file does not start with `<?xml`", "what stands before it was skipped")
+                ("the file does not start with `<?xml`", "the text before it was skipped")
             }
             Self::Comment => ("a comment holds `--`", "the comment was skipped"),
             Self::StrayEnd => ("a closing tag closes nothing", "it was skipped"),

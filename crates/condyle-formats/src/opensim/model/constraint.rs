@@ -42,7 +42,7 @@ pub(super) fn read_all(reader: &mut Reader<'_, '_>) -> Result<(), Error> {
                     "osim/unknown-constraint",
                     element,
                     format!("the constraint type `{other}` is not known"),
-                    "it is left out; tracking will not enforce it",
+                    "it is ignored: tracking will not enforce it",
                 );
                 continue;
             }

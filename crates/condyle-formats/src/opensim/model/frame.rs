@@ -185,7 +185,7 @@ impl<'d> Frames<'d> {
             _ => Err(owner
                 .error(
                     "osim/no-frame",
-                    format!("{} says of no frame that it is in it", owner.describe()),
+                    format!("{} does not name the frame that it is attached to", owner.describe()),
                 )
                 .with_help(format!("add <socket_{socket}> with the path of a frame"))),
         }
@@ -228,9 +228,9 @@ impl<'d> Frames<'d> {
         Err(reference
             .error(
                 "osim/frame-cycle",
-                format!("frame `{}` never leads to a body", reference.text()),
+                format!("frame `{}` is not attached to a body", reference.text()),
             )
-            .with_help("is it its own ancestor? let a frame on the way be fixed in a body"))
+            .with_help("is it its own ancestor? attach one of its ancestors to a body"))
     }
 
     fn look_up(&self, owner: Element<'d>, reference: Element<'d>) -> Result<usize, Error> {
@@ -336,7 +336,10 @@ impl<'d> Frames<'d> {
         if self.items[index].kind == Kind::StationDefined {
             return Err(reference.error(
                 "osim/station-frame",
-                format!("a station of `{}` stands in another frame of stations", owner.describe()),
+                format!(
+                    "a station of `{}` is fixed in another station-defined frame",
+                    owner.describe()
+                ),
             ));
         }
         self.resolve(owner, reference)
