@@ -32,7 +32,11 @@ fuzz_target!(|data: &[u8]| {
     let mut left = 3;
     let mut include = |name: &str| {
         left -= 1;
-        if left < 0 || name.len() > 20 { Err("nothing there".to_owned()) } else { Ok(text.to_string()) }
+        if left < 0 || name.len() > 20 {
+            Err("nothing there".to_owned())
+        } else {
+            Ok(text.to_string())
+        }
     };
     let model = match read_with(&text, &mut include, &registry) {
         Ok(read) => {

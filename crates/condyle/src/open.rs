@@ -198,18 +198,28 @@ fn included(path: &Path) -> Result<String, String> {
     utf8(&bytes).map(str::to_owned).map_err(|error| error.to_string())
 }
 
+/// What is picked from the content of a file that can hold it.
+fn only<T>(
+    path: &Path,
+    kind: ContentKind,
+    pick: impl FnOnce(Content) -> Option<T>,
+) -> Result<Read<T>, OpenError> {
+    let Read { value, warnings } = content(path, Some(kind))?;
+    let value = pick(value).ok_or_else(|| failed(path, Cause::Format { wanted: Some(kind) }))?;
+    Ok(Read { value, warnings })
+}
+
 /// Opens a model of any format, as [`content`] does.
 ///
 /// # Errors
 /// As [`content`].
 pub fn model(path: &Path) -> Result<Read<Model>, OpenError> {
-    let read = content(path, Some(ContentKind::Model))?;
-    match read.value {
-        Content::Model(value) => Ok(Read { value, warnings: read.warnings }),
+    only(path, ContentKind::Model, |content| match content {
+        Content::Model(model) => Some(model),
         #[cfg(feature = "document")]
-        Content::Document(document) => Ok(Read { value: document.model, warnings: read.warnings }),
-        _ => Err(failed(path, Cause::Format { wanted: Some(ContentKind::Model) })),
-    }
+        Content::Document(document) => Some(document.model),
+        _ => None,
+    })
 }
 
 /// Opens a marker recording of any format, as [`content`] does.
@@ -217,11 +227,10 @@ pub fn model(path: &Path) -> Result<Read<Model>, OpenError> {
 /// # Errors
 /// As [`content`].
 pub fn recording(path: &Path) -> Result<Read<Recording>, OpenError> {
-    let read = content(path, Some(ContentKind::Recording))?;
-    match read.value {
-        Content::Recording(value) => Ok(Read { value, warnings: read.warnings }),
-        _ => Err(failed(path, Cause::Format { wanted: Some(ContentKind::Recording) })),
-    }
+    only(path, ContentKind::Recording, |content| match content {
+        Content::Recording(recording) => Some(recording),
+        _ => None,
+    })
 }
 
 /// Opens a table over time of any format, such as a motion, as [`content`] does.
@@ -229,28 +238,25 @@ pub fn recording(path: &Path) -> Result<Read<Recording>, OpenError> {
 /// # Errors
 /// As [`content`].
 pub fn table(path: &Path) -> Result<Read<Table>, OpenError> {
-    let read = content(path, Some(ContentKind::Motion))?;
-    match read.value {
-        Content::Table(value) => Ok(Read { value, warnings: read.warnings }),
-        _ => Err(failed(path, Cause::Format { wanted: Some(ContentKind::Motion) })),
-    }
+    only(path, ContentKind::Motion, |content| match content {
+        Content::Table(table) => Some(table),
+        _ => None,
+    })
 }
 
 /// Opens a setup of inverse kinematics, as [`content`] does.
 ///
 /// # Errors
-/// As [`content`].
+/// As [`content`]; `setup/no-tool` for tasks alone.
 #[cfg(feature = "opensim")]
 pub fn setup(path: &Path) -> Result<Read<IkSetup>, OpenError> {
-    let read = content(path, Some(ContentKind::Setup))?;
-    match read.value {
-        Content::Setup(value) => Ok(Read { value, warnings: read.warnings }),
-        _ => {
-            let error = Error::new("setup/no-tool", "the file holds tasks without their tool");
-            let error = error.with_help("give the setup that names them");
-            Err(failed(path, Cause::Content { error, text: None }))
-        }
+    let Read { value, warnings } = content(path, Some(ContentKind::Setup))?;
+    if let Content::Setup(value) = value {
+        return Ok(Read { value, warnings });
     }
+    let error = Error::new("setup/no-tool", "the file holds tasks without their tool")
+        .with_help("give the setup that names them");
+    Err(failed(path, Cause::Content { error, text: None }))
 }
 
 /// A motion of a model, from a table whose columns are named after its coordinates.
@@ -269,10 +275,11 @@ pub fn motion(path: &Path, model: &Model) -> Result<Read<Motion>, OpenError> {
 /// As [`content`]; names that the model does not have.
 #[cfg(feature = "poses")]
 pub fn poses(path: &Path, model: &Model) -> Result<Read<Resolved>, OpenError> {
-    let Read { value: Content::Poses(poses), warnings } = content(path, Some(ContentKind::Poses))?
-    else {
-        return Err(failed(path, Cause::Format { wanted: Some(ContentKind::Poses) }));
-    };
+    let Read { value: poses, warnings } =
+        only(path, ContentKind::Poses, |content| match content {
+            Content::Poses(poses) => Some(poses),
+            _ => None,
+        })?;
     let resolved = poses.resolve(model);
     let value = resolved.map_err(|error| failed(path, Cause::Content { error, text: None }))?;
     Ok(Read { value, warnings })

@@ -1,10 +1,10 @@
 //! `condyle convert`: a file in another format.
 
-use super::Outcome;
+use super::{Limits, Outcome};
 use crate::failure::{Failure, warn_about, warned};
 use crate::motion_format as format;
 use crate::output;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use condyle::formats::document::{self, Document};
 use condyle::formats::{Content, ContentKind, Format, Id, trc};
 use condyle::open::Cause;
@@ -30,12 +30,6 @@ pub(crate) struct Convert {
     /// The format of the output; by default that of its ending.
     #[arg(long, value_parser = format::names(&WRITTEN))]
     to: Option<String>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Limits {
-    Off,
-    On,
 }
 
 /// What can be written.

@@ -1,9 +1,9 @@
 //! `condyle fk`: world transforms.
 
-use super::Outcome;
+use super::{Limits, Outcome};
 use crate::failure::{Failure, warned};
 use crate::output;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use condyle::formats::poses::Resolved;
 use condyle::{Mode, Model, Motion, Pose, Program, open};
 use serde_json::{Map, Value, json};
@@ -28,12 +28,6 @@ pub(crate) struct Fk {
     /// Where to write the answer; `-` is standard output.
     #[arg(short, long, default_value = "-")]
     output: PathBuf,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Limits {
-    Off,
-    On,
 }
 
 /// A value for a coupled coordinate that differs from what its leaders make by more than this is

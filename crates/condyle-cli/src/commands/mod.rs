@@ -11,7 +11,7 @@ mod scale;
 mod track;
 
 use crate::failure::Failure;
-use clap::{Parser, Subcommand};
+use clap::{Parser, Subcommand, ValueEnum};
 
 /// Anatomical joints: models, limits, and tracking of markers.
 #[derive(Debug, Parser)]
@@ -41,6 +41,13 @@ enum Command {
     Bench(bench::Bench),
     /// Track a recording made from a known motion, and report the errors.
     Demo(demo::Demo),
+}
+
+/// Whether limits hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Limits {
+    Off,
+    On,
 }
 
 /// How a command ended.

@@ -1,11 +1,11 @@
 //! `condyle track`: marker recordings in, motion out.
 
-use super::Outcome;
+use super::{Limits, Outcome};
 use crate::failure::{Failure, warn_about, warned};
 use crate::motion_format;
 use crate::output;
 use crate::progress::frames_bar;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use condyle::formats::{Recording, csv};
 use condyle::tracking::{Job, MarkerErrors, Report, Request, Tracking};
 use condyle::{Model, open};
@@ -48,12 +48,6 @@ pub(crate) struct Track {
     /// The report as one JSON document on standard output.
     #[arg(long)]
     json: bool,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Limits {
-    Off,
-    On,
 }
 
 impl Track {
