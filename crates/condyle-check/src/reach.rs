@@ -1,8 +1,8 @@
-//! Which values the scalars of a model take while their leaders run through their ranges.
+//! The values that the scalars of a model take while their leaders vary over their ranges.
 //!
-//! Laws of scalars are few and small, so they are run here one by one, in the order in which they
-//! need each other, at samples of the leaders: every sample is a value that the model really takes,
-//! and with one leader it is known which of its values does it.
+//! Scalar laws are few and small, so they are evaluated here one by one, in order of dependency, at
+//! samples of the leaders: every sample is a value that the model really takes, and with a single
+//! leader the leader's value that causes it is known.
 
 use super::real_range;
 use condyle_model::component::{Component, Source, Swinging};
@@ -19,13 +19,13 @@ const SEVERAL: usize = 4096;
 /// A scalar with more leaders than this is not sampled, and its leaders beyond are not named.
 const MOST_LEADERS: usize = 32;
 
-/// How many scalars are computed in all: some seconds. No real model comes near it.
+/// The most scalars that are computed in total: a few seconds. Real models need far fewer.
 const BUDGET: usize = 20_000_000;
 
 /// The scalars of a model, in an order in which they can be computed.
 pub(super) struct Reach<'m> {
     model: &'m Model,
-    /// Followers and outputs of components, each after what it reads.
+    /// Followers and outputs of components, each after its inputs.
     order: Vec<Source>,
     place: HashMap<Source, usize>,
     /// For each of them the free coordinates that determine it.
@@ -50,7 +50,7 @@ impl Taken {
     }
 }
 
-/// What a scalar reads: nothing for a coordinate that is free, or for what is no law of scalars.
+/// The inputs of a scalar; none for a free coordinate, or for a component that is no scalar law.
 fn reads(model: &Model, source: Source) -> Vec<Source> {
     match source {
         Source::Coordinate(id) => model.coordinate(id).follows.into_iter().collect(),
@@ -74,7 +74,7 @@ impl<'m> Reach<'m> {
             leaders: vec![],
             left: Cell::new(BUDGET),
         };
-        // Depth first with a stack: a scalar is computed after all that it reads.
+        // Depth first with a stack: a scalar is computed after all its inputs.
         let mut seen = std::collections::HashSet::new();
         let mut stack: Vec<(Source, bool)> = vec![];
         for source in wanted {
@@ -94,7 +94,7 @@ impl<'m> Reach<'m> {
         reach
     }
 
-    /// The leaders of a scalar, from those of what it reads.
+    /// The leaders of a scalar, from those of its inputs.
     fn leaders_of(&self, source: Source) -> Vec<CoordinateId> {
         let reads = reads(self.model, source);
         if let (Source::Coordinate(id), []) = (source, &reads[..]) {
@@ -113,12 +113,12 @@ impl<'m> Reach<'m> {
         self.place.get(&source).map_or(&[], |&place| &self.leaders[place])
     }
 
-    /// Whether all that was asked for could be sampled.
+    /// Whether everything requested could be sampled.
     pub(super) fn finished(&self) -> bool {
         self.left.get() > 0
     }
 
-    /// All that must be computed before a scalar, and itself, in order.
+    /// All that must be computed before a scalar, and the scalar itself, in order.
     fn plan(&self, source: Source) -> Vec<Source> {
         let mut seen = std::collections::HashSet::from([source]);
         let mut open = vec![source];
@@ -168,13 +168,13 @@ impl<'m> Reach<'m> {
         last
     }
 
-    /// A scalar where every coordinate has its default.
+    /// The value of a scalar with every coordinate at its default.
     pub(super) fn at_rest(&self, source: Source) -> f64 {
         self.run(&self.plan(source), |id| self.model.coordinate(id).default[0])
     }
 
-    /// The values of a scalar while its leaders run through their declared ranges, locked ones
-    /// standing at their defaults; none if a leader has no range, or if it is no law of scalars.
+    /// The values of a scalar while its leaders vary over their declared ranges, locked ones at
+    /// their defaults; none if a leader has no range, or if it is no scalar law.
     pub(super) fn taken(&self, source: Source) -> Option<Taken> {
         let leaders = self.leaders(source);
         if leaders.len() > MOST_LEADERS || !self.finished() {
@@ -275,7 +275,7 @@ mod tests {
         let model = b.build().unwrap();
         let reach = Reach::new(&model);
         for (output, [low, high]) in bounds.into_iter().enumerate() {
-            // The cone is narrower than the ranges, which tracking does not know.
+            // The cone is narrower than the ranges; open mode does not apply it.
             let taken = reach.taken(Source::Output(id, output as u32)).unwrap();
             let [least, greatest] = taken.extremes().unwrap();
             let off = (least.1 - low).abs().max((greatest.1 - high).abs());
