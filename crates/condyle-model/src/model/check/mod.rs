@@ -1,4 +1,4 @@
-//! What makes a model whole: names, types, places and circles, checked once when it is built.
+//! Validity of a model: names, types, places and cycles, checked once when it is built.
 
 mod component;
 mod order;
@@ -113,7 +113,7 @@ fn check_segments(model: &Model, findings: &mut Vec<Diagnostic>) {
                     "model/segment-cycle",
                     Subject::Segment(names[0].to_owned()),
                     format!("segments are their own ancestors: {}", names.join(" -> ")),
-                    "let one of them hang on the world, or close the loop with a constraint",
+                    "attach one of them to the world, or close the loop with a constraint",
                 ));
                 return;
             }
@@ -169,7 +169,7 @@ fn check_coordinates(model: &Model, findings: &mut Vec<Diagnostic>) {
                 "model/not-finite",
                 Subject::Coordinate(key.clone()),
                 format!("a limit of coordinate `{key}` is not a number"),
-                "leave a limit away where there is none",
+                "omit a limit where there is none",
             ));
         } else if let (Some(lower), Some(upper)) = (lower, upper)
             && lower > upper
