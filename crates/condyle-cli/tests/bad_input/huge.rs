@@ -44,7 +44,7 @@ fn a_hundred_megabytes(name: &str, piece: &str, said: [&str; 4]) {
 const NO_ELEMENT: &str = "1: there is no element (this is not an XML file)";
 const EMPTY_TRC: &str = "1: the file is empty (a TRC file starts with `PathFileType`)";
 const EMPTY_CSV: &str = "1: there is no line of names (the first line must name the columns)";
-const ENDLESS_MOT: &str = "1: a line of the header has no end in sight (is this a motion? write \
+const ENDLESS_MOT: &str = "1: a line of the header is too long (is this a motion? write \
                            `endheader` before the line of names)";
 
 #[test]

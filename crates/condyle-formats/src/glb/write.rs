@@ -83,7 +83,7 @@ pub fn write(scene: &Scene) -> Result<Vec<u8>, Error> {
     writer.finish()
 }
 
-/// Says what is wrong with a scene before anything is built.
+/// Validates a scene before anything is built.
 fn check(scene: &Scene) -> Result<(), Error> {
     for (index, node) in scene.nodes.iter().enumerate() {
         if let Some(parent) = node.parent
@@ -153,13 +153,13 @@ fn check_pose(pose: &LocalPose, name: &str, when: &str) -> Result<(), Error> {
         .with_help("places and sizes are finite, a rotation is a unit quaternion x, y, z, w"))
 }
 
-/// A quaternion made of length 1; none if it has no length.
+/// A quaternion normalised to length 1; none if its length is 0.
 fn unit(q: [f64; 4]) -> Option<[f32; 4]> {
     let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
     (length.is_finite() && length > 1e-6).then(|| q.map(|x| (x / length) as f32))
 }
 
-/// Rotations as unit quaternions whose signs never jump, so that LINEAR takes the short way.
+/// Rotations as unit quaternions whose signs never jump, so that LINEAR takes the shortest arc.
 fn continuous(poses: impl Iterator<Item = [f64; 4]>) -> Vec<[f32; 4]> {
     let mut rotations: Vec<[f32; 4]> = Vec::new();
     for rotation in poses {

@@ -4,7 +4,7 @@ use crate::text::{Line, number};
 use condyle_diagnostics::{Diagnostic, Error, Place, Warnings};
 use condyle_motion::LengthUnit;
 
-/// How cells are told apart.
+/// How cells are separated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Delimiter {
     Tab,
@@ -26,7 +26,7 @@ impl Delimiter {
     }
 }
 
-/// What the lines before the rows say.
+/// The contents of the lines before the rows.
 #[derive(Debug)]
 pub(super) struct Header {
     pub(super) labels: Vec<String>,
@@ -72,7 +72,7 @@ pub(super) fn read<'a>(
     Ok(Header { labels, rate, frames: number_of("NumFrames"), unit, values: values_line.place() })
 }
 
-/// Finds the line of keys, which is the second of a good file.
+/// Finds the line of keys, which is the second of a valid file.
 fn find_keys<'a>(
     lines: &mut impl Iterator<Item = Line<'a>>,
     warnings: &mut Warnings,
@@ -128,7 +128,7 @@ fn unit_of(name: Option<&str>, line: Line<'_>, warnings: &mut Warnings) -> Optio
     let unit = name.and_then(LengthUnit::from_name);
     if unit.is_none() {
         let message = match name {
-            Some(name) if number(name).is_none() => format!("`{name}` is no unit of length"),
+            Some(name) if number(name).is_none() => format!("`{name}` is not a unit of length"),
             _ => "the header has no unit of length".to_owned(),
         };
         warnings.add("trc/unit", || {
@@ -171,7 +171,7 @@ fn labels<'a>(
     while lines.peek().is_some_and(Line::is_blank) {
         lines.next();
     }
-    // The axis line has no number in it; where it is left out the rows follow at once.
+    // The axis line has no number in it; where it is missing the rows follow immediately.
     let axes = lines.next_if(|line| {
         let mut filled = line.text.split_whitespace().peekable();
         filled.peek().is_some()
@@ -196,10 +196,10 @@ fn labels<'a>(
         warnings.push(
             Diagnostic::warning(
                 "trc/marker-count",
-                format!("NumMarkers says {declared}, names there are {}", named.len()),
+                format!("NumMarkers is {declared}, but there are {} names", named.len()),
             )
             .at(label_line.place())
-            .with_help("the names are right"),
+            .with_help("the names are used"),
         );
     }
     Ok(distinct(&named, label_line, warnings))

@@ -1,6 +1,6 @@
 //! TRC, the marker recordings of Motion Analysis.
 //!
-//! The grammar, as the files in the wild have it:
+//! The grammar, as found in existing files:
 //!
 //! ```text
 //! file      = [ "PathFileType" ... ] line
@@ -12,21 +12,20 @@
 //! row       = frame time { x y z }          blank or NaN: the marker was not seen
 //! ```
 //!
-//! Cells are separated by tabs; in a line without any tab by spaces. Dialects and what is made
-//! of them:
+//! Cells are separated by tabs; in a line without any tab by spaces. How dialects are read:
 //!
-//! - Labels are taken **by order**, never by tab position: OpenSim once wrote one tab too many
-//!   (`Time\t\tSternum`). Axis names are not looked at, so they may start at X5.
-//! - Header keys are found by name; `OrigDataRate` and its friends may be missing. `NumFrames`
-//!   and `NumMarkers` are often wrong: the rows and the labels rule, with a warning.
-//! - A marker with a blank, NaN or infinite coordinate was not seen. `0 0 0` is a place like any
-//!   other unless [`Options::zero_is_missing`] says otherwise.
-//! - A row that ends early leaves its last markers unseen, with a warning. Whole markers beyond
-//!   the last name are skipped, with a warning, if the first row has them too; any other cell too
-//!   many is an error.
-//! - Of two markers with one name the second becomes `name#2`, with a warning.
+//! - Labels are assigned **by order**, never by tab position: OpenSim once wrote one tab too many
+//!   (`Time\t\tSternum`). Axis names are ignored, so they may start at X5.
+//! - Header keys are found by name; `OrigDataRate` and similar keys may be missing. `NumFrames`
+//!   and `NumMarkers` are often wrong: the actual rows and labels are used, with a warning.
+//! - A marker with a blank, NaN or infinite coordinate was not seen. `0 0 0` is an ordinary
+//!   position unless [`Options::zero_is_missing`] is set.
+//! - If a row ends early, its last markers are missing, with a warning. Whole markers beyond the
+//!   last name are skipped, with a warning, if the first row has them too; any other surplus cell
+//!   is an error.
+//! - Of two markers with the same name the second becomes `name#2`, with a warning.
 //! - An unknown or blank unit is guessed from the size of the data, with a warning.
-//! - Times that repeat are a warning, times that go back an error.
+//! - Repeated times are a warning, decreasing times an error.
 
 mod header;
 mod read;
