@@ -1,4 +1,4 @@
-//! In which format something is written.
+//! The format in which something is written.
 
 use crate::failure::{Failure, warned};
 use clap::builder::PossibleValuesParser;
@@ -6,7 +6,7 @@ use condyle::formats::{FORMATS, Format, Kind};
 use condyle::{Model, Motion, Recording, encode, open};
 use std::path::Path;
 
-/// What a motion may be written as.
+/// The kinds of content that a motion can be written as.
 const MOTION: [Kind; 2] = [Kind::Motion, Kind::Scene];
 
 /// The names that `--to` takes for these kinds.

@@ -15,7 +15,7 @@ pub(crate) struct Diff {
     a: PathBuf,
     /// Another motion; interpolated linearly between its frames.
     b: PathBuf,
-    /// The model of both: tells rotations, which are then compared in degrees.
+    /// The model of both motions; with it rotations are compared in degrees.
     #[arg(long, value_name = "M")]
     model: Option<PathBuf>,
     /// One JSON document on standard output.
@@ -36,8 +36,8 @@ impl Diff {
             && (a.angle_unit == AngleUnit::Degrees) != (b.angle_unit == AngleUnit::Degrees)
         {
             eprintln!(
-                "warning: {} says {}, {} {}; without --model rotations cannot be told from lengths, so \
-                 the numbers are compared as they are",
+                "warning: {} has {}, {} has {}; without --model rotations cannot be distinguished \
+                 from lengths, so the numbers are compared without conversion",
                 self.a.display(),
                 unit_name(&a),
                 self.b.display(),

@@ -25,7 +25,7 @@ pub(crate) struct Fk {
     /// One JSON document on standard output (the default, and the only form).
     #[arg(long)]
     json: bool,
-    /// Where to write the answer; `-` is standard output.
+    /// Where to write the result; `-` is standard output.
     #[arg(short, long, default_value = "-")]
     output: PathBuf,
 }
@@ -36,8 +36,8 @@ enum Limits {
     On,
 }
 
-/// A value for a coupled coordinate that differs from what its leaders make by more than this is
-/// worth a warning.
+/// A value for a coupled coordinate that differs from the value that its leaders determine by more
+/// than this gives a warning.
 const COUPLING_TOLERANCE: f64 = 1e-9;
 
 impl Fk {

@@ -23,15 +23,15 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Say what is in a file: segments and coordinates, or markers, frames and gaps.
+    /// Show the contents of a file: segments and coordinates, or markers, frames and gaps.
     Info(info::Info),
-    /// Find what is odd in a model, and where a motion leaves its limits.
+    /// Find inconsistencies in a model, and frames in which a motion leaves its limits.
     Check(check::Check),
     /// Pose a model: world transforms of all segments.
     Fk(fk::Fk),
-    /// Find the motion of a model that follows recorded markers.
+    /// Compute the motion of a model that follows recorded markers.
     Track(track::Track),
-    /// Make a model as large as the person of a static trial.
+    /// Scale a model to the person of a static trial.
     Scale(scale::Scale),
     /// Write a file in another format.
     Convert(convert::Convert),
@@ -39,20 +39,20 @@ enum Command {
     Diff(diff::Diff),
     /// Measure how fast a model is posed on this machine.
     Bench(bench::Bench),
-    /// The whole story on a recording made from a known motion.
+    /// Demonstrate all steps on a synthetic recording of a known motion.
     Demo(demo::Demo),
 }
 
 /// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// All is well.
+    /// Success.
     Done,
-    /// The input was read but what was asked does not hold.
+    /// The input was read but a requested condition does not hold.
     DoesNotHold,
 }
 
-/// Carries a command out.
+/// Runs a command.
 pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
     match arguments.command {
         Command::Info(command) => command.run(),
