@@ -6,12 +6,12 @@ use std::time::{Duration, Instant};
 const BUDGET: Duration = Duration::from_millis(700);
 
 /// How long one batch of calls should take: much longer than reading the clock, much shorter than
-/// the time slices that other programs take.
+/// the time slices of other programs.
 const BATCH: Duration = Duration::from_micros(500);
 
-/// Nanoseconds of one call: the fastest of many batches, which is the time nobody disturbed.
+/// Nanoseconds of one call: the fastest of many batches, which other programs disturbed least.
 ///
-/// `call` hears the number of the call, so that it can walk through different inputs.
+/// `call` receives the number of the call, so that it can use different inputs in turn.
 pub fn nanoseconds(mut call: impl FnMut(usize)) -> f64 {
     let start = Instant::now();
     let mut calls = 0;
