@@ -79,7 +79,7 @@ impl Convert {
             Content::Recording(_) => {
                 return Err(self.unknown(
                     target,
-                    "; `condyle track MODEL TRIAL -o OUT` makes motions of recordings",
+                    "; `condyle track MODEL TRIAL -o OUT` computes motions from recordings",
                 ));
             }
             _ => return Err(self.unknown(target, "")),

@@ -154,7 +154,7 @@ fn what_cannot_be_converted_is_told_what_can() {
     refused(&["m.mot", "m.glb"], "without --model a motion cannot be converted to .glb");
     refused(&["m.mot", "m.xyz"], "the ending names no format that can be written");
     let said = refused(&["a.trc", "a.mot", "--model", "leg.osim"], known);
-    assert!(said.contains("`condyle track MODEL TRIAL -o OUT` makes motions of recordings"));
+    assert!(said.contains("`condyle track MODEL TRIAL -o OUT` computes motions from recordings"));
     refused(&["m.mot", "-"], "name the format with --to");
     refused(&["readme.txt", "a.mot"], known);
     let bare = leg::osim().replace("MarkerSet>", "RemarkSet>");

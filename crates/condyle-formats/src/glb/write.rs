@@ -144,7 +144,7 @@ fn check_length(found: usize, scene: &Scene, name: &str) -> Result<(), Error> {
 }
 
 fn check_pose(pose: &LocalPose, name: &str, when: &str) -> Result<(), Error> {
-    // f32 holds no more than 3.4e38; nothing posed is a million kilometres away.
+    // f32 holds no more than 3.4e38; positions beyond a million kilometres are errors.
     let held = |numbers: &[f64; 3]| numbers.iter().all(|x| x.abs() < 1e9);
     if held(&pose.translation) && held(&pose.scale) && unit(pose.rotation).is_some() {
         return Ok(());

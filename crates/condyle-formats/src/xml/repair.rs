@@ -101,7 +101,7 @@ impl<'a> Places<'a> {
         Self { text, line: 1, line_start: 0, reached: 0 }
     }
 
-    /// The place of an offset that is not before the last one asked for.
+    /// The place of an offset that is not before the previous one requested.
     pub(super) fn at(&mut self, offset: usize) -> Place {
         let bytes = self.text.as_bytes();
         while self.reached < offset {

@@ -198,7 +198,7 @@ fn place<'d>(
                 "osim/loop-joint",
                 element,
                 format!("{} joins two bodies that are connected already", element.describe()),
-                "the loop is kept as a constraint, which tracking enforces",
+                "the loop is kept as a constraint, which tracking closes",
             );
             reader.builder.closure(Closure {
                 name: name.clone(),

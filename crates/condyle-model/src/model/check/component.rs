@@ -281,7 +281,7 @@ fn check_compensate(
             "model/not-an-ancestor",
             place.subject.clone(),
             format!(
-                "{place} compensates `{}`, which is no ancestor of `{}`",
+                "{place} compensates `{}`, which is not an ancestor of `{}`",
                 model.segment(*id).name,
                 model.segment(c.segment).name
             ),
@@ -307,7 +307,7 @@ fn check_contact(
             "model/not-an-ancestor",
             place.subject.clone(),
             format!(
-                "{place} glides on `{}`, which is no ancestor of `{}`",
+                "{place} glides on `{}`, which is not an ancestor of `{}`",
                 model.segment(c.surface).name,
                 model.segment(c.segment).name
             ),
