@@ -1,7 +1,7 @@
 //! Nanoseconds of one quaternion ball: `cargo bench -p condyle-benches --bench ball_chain`.
 //!
 //! Chains of 24, 67 and 256 balls and a body of 60, one pose at a time, 64 different poses in turn;
-//! beside each the bare products along the same tree, of transforms that are already there.
+//! beside each only the products along the same tree, of transforms computed before.
 #![allow(missing_docs, reason = "a benchmark has no interface")]
 
 use condyle_benches::bare_products::BareProducts;
@@ -30,7 +30,7 @@ fn measure(name: &str, parents: &[usize]) -> Vec<String> {
     let poses = chain::poses(&model, 64);
     let mut bare = BareProducts::new(parents.to_vec());
     let (mut time, mut bound) = (f64::INFINITY, f64::INFINITY);
-    // In turns, so that a disturbance meets both.
+    // Alternately, so that a disturbance affects both.
     for _ in 0..3 {
         time = time.min(clock::nanoseconds(|i| {
             let evaluated = program.evaluate(black_box(&poses[i % 64]), Mode::Open, &mut pose);

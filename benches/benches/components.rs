@@ -1,8 +1,8 @@
 //! Nanoseconds of every kind of joint: `cargo bench -p condyle-benches --bench components`.
 //!
 //! Lines of 24 joints of one kind, 64 different poses in turn, per joint: one pose in posed mode, and
-//! one with its Jacobian; beside them the bare product of a transform that is already there. Then a
-//! whole shoulder. A name given as an argument measures the kinds that contain it.
+//! one with its Jacobian; beside them only the product of a transform computed before. Then a whole
+//! shoulder. With a name as an argument only the kinds whose names contain it are measured.
 #![allow(missing_docs, reason = "a benchmark has no interface")]
 
 use condyle_benches::bare_products::BareProducts;

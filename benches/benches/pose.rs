@@ -1,8 +1,8 @@
 //! Nanoseconds of one pose of a full body: `cargo bench -p condyle-benches --bench pose
 //! [-- --osim FILE]`.
 //!
-//! Beside it two parts of the same work: one sine and cosine for each turn that a coordinate
-//! drives, and the bare products of as many transforms.
+//! Beside it two parts of the same work: one sine and cosine for each rotation that a coordinate
+//! drives, and only the products of as many transforms.
 #![allow(missing_docs, reason = "a benchmark has no interface")]
 
 mod files;

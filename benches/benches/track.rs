@@ -2,7 +2,7 @@
 //! [-- --model F --trial F [--setup IK.xml]]`.
 //!
 //! Without files a noisy walk of the full body is tracked. The bound is the linearisation: one pose
-//! with its Jacobian for each iteration, which no Gauss-Newton solver can do without.
+//! with its Jacobian for each iteration, which every Gauss-Newton solver needs.
 #![allow(missing_docs, reason = "a benchmark has no interface")]
 
 mod files;

@@ -1,4 +1,4 @@
-//! The bound of every evaluation: the products of transforms that are already there.
+//! The lower bound of every evaluation: the products of transforms computed before.
 
 use condyle_math::{Affine, Quat, Vec3};
 use std::hint::black_box;
@@ -12,7 +12,8 @@ pub struct BareProducts {
 }
 
 impl BareProducts {
-    /// A tree whose node 0 is the root and whose node i hangs on `parents[i]`, a node before it.
+    /// A tree whose node 0 is the root and whose node i has the parent `parents[i]`, a node before
+    /// it.
     pub fn new(parents: Vec<usize>) -> Self {
         let local: Vec<Affine> = (0..parents.len())
             .map(|i| {
@@ -25,7 +26,7 @@ impl BareProducts {
 
     /// `world[i] = world[parent] · local[i]` for every node but the root.
     ///
-    /// The frame stays in registers along a chain, as in the best program that could be written.
+    /// The frame stays in registers along a chain, as in an optimal program.
     pub fn run(&mut self) {
         let local = black_box(&self.local[..]);
         let mut nodes = self.parents.iter().zip(local).enumerate().skip(1).peekable();

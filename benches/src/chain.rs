@@ -1,10 +1,10 @@
-//! Skeletons of quaternion balls, as games and motion capture have them.
+//! Skeletons of quaternion balls, as used in games and motion capture.
 
 use crate::random::Random;
 use condyle_math::Vec3;
 use condyle_model::{Model, ModelBuilder};
 
-/// A root and one ball joint for every further node; node i hangs on `parents[i]`.
+/// A root and one ball joint for every further node; node i has the parent `parents[i]`.
 pub fn balls(parents: &[usize]) -> Model {
     let mut b = ModelBuilder::new("balls");
     let mut nodes = vec![b.segment("root", None)];
@@ -22,8 +22,8 @@ pub fn line(joints: usize) -> Vec<usize> {
     (0..=joints).map(|i| i.saturating_sub(1)).collect()
 }
 
-/// The parents of a body of 60 joints: a spine of 7 that carries two legs of 4 from its root, and
-/// from its end a neck of 3 and two arms of 4 with five fingers of 3 and one palm bone each.
+/// The parents of a body of 60 joints: a spine of 7 with two legs of 4 at its root, and at its end
+/// a neck of 3 and two arms of 4 with five fingers of 3 and one palm bone each.
 pub fn body() -> Vec<usize> {
     let mut parents = line(7);
     let hang = |parents: &mut Vec<usize>, from: usize, length: usize| {

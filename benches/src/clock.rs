@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 const BUDGET: Duration = Duration::from_millis(700);
 
 /// How long one batch of calls should take: much longer than reading the clock, much shorter than
-/// the time slices that other programs take.
+/// the time slices of other programs.
 const BATCH: Duration = Duration::from_micros(500);
 
 /// Nanoseconds of one call: the fastest of many batches, the one least disturbed by other processes.

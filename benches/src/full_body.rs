@@ -163,8 +163,8 @@ impl Body {
         self.hinge(&named("mtp"), &named("toes"), calcn, at, oblique, (-0.5, 0.5));
     }
 
-    /// The tibia turns about three axes and glides in two directions, all by the one flexion; the
-    /// patella's own angle follows the flexion.
+    /// The tibia rotates about three axes and translates in two directions, all as functions of the
+    /// flexion; the patella's own angle follows the flexion.
     fn knee(&mut self, side: &str, sign: f64, femur: SegmentId) -> SegmentId {
         let named = |name: &str| format!("{name}_{side}");
         let tibia = self.b.segment(&named("tibia"), Some(femur));

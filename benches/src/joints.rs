@@ -16,7 +16,7 @@ use condyle_model::{
 pub struct Kind {
     /// What it is called in tables.
     pub name: &'static str,
-    /// A joint of few fixed axes, as every skeleton has them.
+    /// Whether it has few fixed axes, like the joints of most skeletons.
     pub simple: bool,
     make: fn(&mut ModelBuilder, JointSetId, SegmentId) -> Signal,
 }
@@ -99,10 +99,10 @@ fn ball_in_cone(b: &mut ModelBuilder, set: JointSetId, half: f64) -> Signal {
     b.product(set, "product", turns)
 }
 
-/// Where the scapula hangs in the thorax at rest.
+/// The position of the scapula in the thorax in the default pose.
 pub const SCAPULA: Vec3 = Vec3::new(-0.02, 0.02, 0.16);
 
-/// Ribs and three pairs of points on a scapula; sizes of a person, and invented.
+/// Ribs and three pairs of points on a scapula; the sizes are realistic but invented.
 pub fn gliding() -> Gliding {
     let (centre, radii) = (Vec3::new(-0.03, -0.1, 0.05), Vec3::new(0.1, 0.18, 0.1));
     // Directions from the centre of the ribs to where they touch, as seen from the scapula's joint.
@@ -118,7 +118,7 @@ pub fn gliding() -> Gliding {
         .unwrap_or_else(|e| panic!("ribs: {e}"))
 }
 
-/// A user's law as cheap as a hinge with a lift.
+/// A user-defined law that costs as little as a hinge with a lift.
 #[derive(Debug)]
 struct Cam;
 

@@ -9,7 +9,7 @@ use std::hint::black_box;
 pub struct Kernel {
     /// Its name.
     pub name: &'static str,
-    /// How often to run it for a steady count: whole rounds of its inputs.
+    /// How often to run it for a stable count: a multiple of the number of its inputs.
     pub repeats: usize,
     /// Runs it that often.
     pub run: fn(usize),

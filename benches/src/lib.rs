@@ -1,7 +1,7 @@
-//! What the benches share: models and recordings with invented numbers, a clock, and tables.
+//! Code shared by the benches: models and recordings with invented numbers, a clock, and tables.
 //!
 //! Every bench prints its figures beside a bound that is measured in the same run, so that a busy
-//! machine moves both. What gates is not a clock but a count of instructions: see
+//! machine affects both. Regressions are detected not by time but by a count of instructions: see
 //! `cargo xtask instructions` and [`kernels`].
 
 pub mod arguments;

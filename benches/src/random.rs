@@ -1,4 +1,4 @@
-//! Repeatable numbers.
+//! Reproducible random numbers.
 
 /// A linear congruential generator (Knuth's MMIX constants).
 #[derive(Clone, Debug)]

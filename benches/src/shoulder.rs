@@ -33,7 +33,7 @@ pub fn network() -> Model {
         other => other,
     };
 
-    // The arm: a cone around three turns, one of which has two centres.
+    // The arm: a cone around three rotations, one of which has two centres.
     let axes = [Vec3::Z, Vec3::X, Vec3::Y];
     let of = Swinging::Angles([flexion, abduction, twist], axes);
     let arm = JointCone { of, cone: cone(-Vec3::Y, 1.9) };
@@ -46,7 +46,7 @@ pub fn network() -> Model {
     let abduct = b.pivot(set, "abduct", abduct);
     let turn = b.rotate(set, "turn", output(arm, 2), axes[2]);
 
-    // What an animator gives from -1 to 1, as angles through 0.
+    // Inputs from -1 to 1, mapped to angles through 0.
     let input = |b: &mut ModelBuilder, name: &str, source, ends: [f64; 2]| {
         b.map(
             set,
@@ -58,7 +58,7 @@ pub fn network() -> Model {
     let elevation = input(&mut b, "elevation_angle", elevation, [-10.0, 30.0]);
     let protraction = input(&mut b, "protraction_angle", protraction, [-25.0, 30.0]);
 
-    // The clavicle: bounds that the arm sets, a cone, two turns.
+    // The clavicle: bounds that the arm sets, a cone, two rotations.
     let table = lines(&[(0.0, -10.0), (60.0, -6.7), (120.0, 4.85), (180.0, 23.0)]);
     let driver = output(arm, 1);
     let lower = Depend { passive: elevation, driver, lower: Some(table), upper: None };
@@ -87,7 +87,7 @@ pub fn network() -> Model {
     let clavicle_motion = b.product(set, "clavicle_motion", vec![protract, elevate]);
     b.output(set, clavicle, clavicle_motion);
 
-    // The scapula: turned back, turned up with the arm, and put on the ribs.
+    // The scapula: the clavicle's rotation undone, rotated upward with the arm, put on the ribs.
     let undo = Compensate { segment: scapula, ancestors: vec![clavicle], weight: 1.0 };
     let undo = b.compensate(set, "scapula_stays", undo);
     let upward = b.map(set, "rhythm", output(arm, 1), Function::linear(0.33, 0.0));
@@ -104,7 +104,7 @@ pub fn network() -> Model {
     let scapula_motion = b.product(set, "scapula_motion", vec![before, glide]);
     b.output(set, scapula, scapula_motion);
 
-    // The humerus hangs free of both.
+    // The humerus does not rotate with either of them.
     let undo = Compensate { segment: humerus, ancestors: vec![clavicle, scapula], weight: 1.0 };
     let undo = b.compensate(set, "arm_stays", undo);
     let arm_motion = b.product(set, "arm_motion", vec![undo, flex, abduct, turn]);

@@ -1,4 +1,4 @@
-//! A motion of any model within its ranges, and what markers would see of it.
+//! A motion of any model within its ranges, and its marker positions.
 
 use crate::random::Random;
 use condyle_model::{CoordinateKind, Mode, Model, Pose, Program};
@@ -9,7 +9,7 @@ pub type Seen = Option<[f64; 3]>;
 /// Frames a second of the motions made here.
 pub const RATE: f64 = 100.0;
 
-/// Coordinates that swing about the middle of their ranges, each at its own pace.
+/// Coordinates that oscillate about the middle of their ranges, each at its own frequency.
 pub fn motion(model: &Model, frames: usize) -> Vec<Vec<f64>> {
     (0..frames)
         .map(|frame| {
@@ -36,7 +36,7 @@ pub fn motion(model: &Model, frames: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Every marker of the model in every frame, off by noise of `deviation` metres on each axis.
+/// Every marker of the model in every frame, with noise of `deviation` metres on each axis.
 pub fn recorded(model: &Model, motion: &[Vec<f64>], deviation: f64) -> Vec<Vec<Seen>> {
     let program = Program::compile(model);
     let mut pose = Pose::new(&program);

@@ -1,5 +1,5 @@
-//! Cargo, and what it says about a workspace: manifests are read by cargo alone, so that no way of
-//! writing a dependency escapes.
+//! Cargo, and its metadata of a workspace: manifests are read by cargo only, so that every notation
+//! of a dependency is recognised.
 
 use crate::outcome::Context;
 use crate::tool;
@@ -23,7 +23,7 @@ pub(crate) fn command(context: &Context) -> Command {
     command
 }
 
-/// Runs cargo with these arguments, its output going where ours goes.
+/// Runs cargo with these arguments; it inherits our output.
 pub(crate) fn run(context: &Context, arguments: &[&str]) -> Result<(), String> {
     tool::run(context, command(context).args(arguments))
 }
@@ -34,17 +34,17 @@ pub(crate) struct Package {
     pub(crate) name: String,
     /// Its folder, from the root of its workspace.
     pub(crate) folder: PathBuf,
-    /// What it uses, of every section and for every platform.
+    /// Its dependencies, of every section and for every platform.
     pub(crate) dependencies: Vec<Dependency>,
-    /// The programs that it is built to.
+    /// The programs built from it.
     pub(crate) programs: Vec<Program>,
 }
 
-/// What a package uses.
+/// A dependency of a package.
 pub(crate) struct Dependency {
-    /// The name of the other package, whatever it is renamed to here.
+    /// The name of the other package, even if it is renamed here.
     pub(crate) name: String,
-    /// Whether only tests, benches and examples see it.
+    /// Whether it is for tests, benches and examples only.
     pub(crate) for_tests: bool,
 }
 
@@ -91,7 +91,7 @@ impl Package {
     }
 }
 
-/// Builds with these arguments of `cargo build`; the programs that came out, by name.
+/// Builds with these arguments of `cargo build`; the resulting programs, by name.
 pub(crate) fn build(
     context: &Context,
     arguments: &[&str],

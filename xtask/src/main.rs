@@ -1,7 +1,7 @@
-//! The project's checks, one command for a laptop and for CI.
+//! The project's checks, with the same command on a laptop and in CI.
 //!
 //! `cargo xtask ci` runs them all, `cargo xtask NAME` one of them; each has a file in `checks/`.
-//! `cargo xtask instructions --bless` writes the committed counts anew.
+//! `cargo xtask instructions --bless` rewrites the committed counts.
 
 mod cargo;
 mod checks;

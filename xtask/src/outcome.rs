@@ -1,27 +1,27 @@
-//! What a check is given and what it answers.
+//! The input of a check and its result.
 
 use std::path::PathBuf;
 
-/// What every check is given.
+/// The input of every check.
 pub(crate) struct Context {
     /// The root of the workspace.
     pub(crate) root: PathBuf,
-    /// Whether committed answers are to be written anew instead of compared.
+    /// Whether committed answers are rewritten instead of compared.
     pub(crate) bless: bool,
-    /// Set where a check is itself under test: the folder to build in. What other programs say is
-    /// then kept for the answer instead of shown, as a planted failure among the messages of a
-    /// test run would mislead.
+    /// Set where a check is itself under test: the folder to build in. The output of other programs
+    /// is then captured for the result instead of shown, as an intended failure would be misleading
+    /// in the output of a test run.
     pub(crate) trial: Option<PathBuf>,
 }
 
 /// How a check ended.
 #[derive(Debug)]
 pub(crate) enum Outcome {
-    /// All is as it should be.
+    /// Nothing is wrong.
     Passed,
-    /// What is not.
+    /// What is wrong.
     Failed(String),
-    /// Why nothing could be said.
+    /// Why the check could not be made.
     Skipped(String),
 }
 
@@ -32,7 +32,7 @@ impl From<Result<(), String>> for Outcome {
 }
 
 impl From<Vec<String>> for Outcome {
-    /// A list of findings: none is a pass.
+    /// From a list of findings: an empty list is a pass.
     fn from(findings: Vec<String>) -> Self {
         match findings[..] {
             [] => Self::Passed,

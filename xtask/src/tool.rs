@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Runs a command, its output going where ours goes.
+/// Runs a command, which inherits our output.
 pub(crate) fn run(context: &Context, command: &mut Command) -> Result<(), String> {
     let shown = shown(command);
     println!("   {shown}");
@@ -26,7 +26,7 @@ pub(crate) fn run(context: &Context, command: &mut Command) -> Result<(), String
     }
 }
 
-/// Runs a command that may hang, for so long at most.
+/// Runs a command that may hang, with a time limit.
 pub(crate) fn run_within(limit: Duration, command: &mut Command) -> Result<(), String> {
     let shown = shown(command);
     println!("   {shown}");
@@ -64,7 +64,7 @@ pub(crate) fn output(context: &Context, command: &mut Command) -> Result<String,
     String::from_utf8(output.stdout).map_err(|_| format!("`{shown}` did not answer with text"))
 }
 
-/// Whether a program is there and answers to `--version`.
+/// Whether a program is installed and accepts `--version`.
 pub(crate) fn is_installed(command: &mut Command) -> bool {
     command.arg("--version").stdout(Stdio::null()).stderr(Stdio::null());
     command.status().is_ok_and(|status| status.success())

@@ -1,4 +1,4 @@
-//! A small workspace in a folder of its own, in which a test plants what a check forbids.
+//! A small workspace in a temporary folder, to which a test adds what a check forbids.
 
 use crate::outcome::{Context, Outcome};
 use std::path::PathBuf;
@@ -17,11 +17,11 @@ impl Workspace {
         let name = format!("condyle-check-{}-{number}", std::process::id());
         let root = std::env::temp_dir().join(name);
         std::fs::create_dir_all(&root).expect("a temporary folder can be made");
-        // Cargo speaks of real paths, also where the temporary folder is a link.
+        // Cargo gives real paths, also where the temporary folder is a link.
         Self { root: root.canonicalize().expect("it is there") }
     }
 
-    /// A crate without any fault, `sound`, that is all of its workspace.
+    /// A crate without any fault, `sound`, as the only one of its workspace.
     pub(crate) fn of_one_crate() -> Self {
         Self::new()
             .file(
@@ -44,7 +44,7 @@ impl Workspace {
         self
     }
 
-    /// The same with a text put behind what a file has.
+    /// The same with a text appended to a file.
     pub(crate) fn with(self, path: &str, text: &str) -> Self {
         let before = std::fs::read_to_string(self.root.join(path)).expect("the file is there");
         self.file(path, &(before + text))
@@ -57,7 +57,7 @@ impl Workspace {
         self.file(path, &before.replace(old, new))
     }
 
-    /// What a check is given to look at this workspace; it builds inside.
+    /// The input of a check of this workspace; it builds inside.
     pub(crate) fn context(&self) -> Context {
         Context { root: self.root.clone(), bless: false, trial: Some(self.root.join("target")) }
     }
@@ -69,7 +69,7 @@ impl Workspace {
         self
     }
 
-    /// Expects that a check fails here, and says so in these words among others.
+    /// Expects that a check fails here with a message that contains these words.
     pub(crate) fn fails(self, check: fn(&Context) -> Outcome, words: &str) -> Self {
         match check(&self.context()) {
             Outcome::Failed(why) => assert!(why.contains(words), "`{words}` is not in: {why}"),

@@ -1,5 +1,5 @@
-//! Runs one kernel a number of times, to be counted from outside: `instruction_counts KERNEL N`,
-//! or `instruction_counts list` for the names and the numbers of times that give a steady count.
+//! Runs one kernel a number of times, to be counted by another program: `instruction_counts KERNEL
+//! N`, or `instruction_counts list` for the names and the repeats that give a stable count.
 
 use condyle_benches::kernels::KERNELS;
 use std::process::ExitCode;

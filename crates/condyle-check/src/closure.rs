@@ -7,9 +7,9 @@ use condyle_model::Model;
 use condyle_model::evaluate::ClosureRows;
 use condyle_model::model::Condition;
 
-/// An open loop shows from here on, in metres and in radians (one degree).
+/// A gap greater than this is reported, in metres.
 pub(super) const OPEN: f64 = 1e-3;
-/// As [`OPEN`], for angles.
+/// As [`OPEN`], in radians: one degree.
 pub(super) const TURNED: f64 = std::f64::consts::PI / 180.0;
 
 /// How far a loop is from closed.
@@ -24,12 +24,12 @@ pub(super) struct Gap {
 }
 
 impl Gap {
-    /// Whether it shows.
+    /// Whether it is large enough to be reported.
     pub(super) fn is_open(self) -> bool {
         self.metres > OPEN || self.radians > TURNED || self.coupling > OPEN
     }
 
-    /// As a sentence part.
+    /// As part of a sentence.
     pub(super) fn shown(self) -> String {
         let turned = format!("{}°", super::rounded(self.radians.to_degrees(), 2));
         match (self.metres > OPEN, self.radians > TURNED) {
@@ -41,7 +41,7 @@ impl Gap {
         }
     }
 
-    /// How bad it is against others of its kind.
+    /// Its size as a multiple of the thresholds.
     pub(super) fn size(self) -> f64 {
         (self.metres / OPEN).max(self.radians / TURNED).max(self.coupling / OPEN)
     }
@@ -80,7 +80,7 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
                 "lint/open-loop",
                 [Subject::Closure(closure.name.clone())],
                 format!("loop `{}` is open by {} in the default pose", closure.name, gap.shown()),
-                "choose defaults that close it; tracking closes it, plain poses do not",
+                "choose defaults that close it; tracking closes it, posing does not",
             ));
         }
     }

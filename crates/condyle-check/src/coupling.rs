@@ -42,7 +42,9 @@ fn range_left(subject: &Inspected<'_>, id: CoordinateId, source: Signal) -> Opti
         .collect();
     let first = first_outside(&taken.samples, |value| outside(value) > slack);
     let from = match (first, &taken.leaders[..]) {
-        (Some(value), [leader]) => format!("; it leaves at {}", subject.shown(*leader, value)),
+        (Some(value), [leader]) => {
+            format!("; it leaves its range at {}", subject.shown(*leader, value))
+        }
         _ => String::new(),
     };
     let enforced = subject.model.coordinate(id).range.enforced;
@@ -63,14 +65,14 @@ fn range_left(subject: &Inspected<'_>, id: CoordinateId, source: Signal) -> Opti
     ))
 }
 
-/// The leader's value nearest to the inside at which a follower has just left its range.
+/// The leader's value where the follower first enters or leaves its range, on the outer side.
 fn first_outside(samples: &[(Vec<f64>, f64)], out: impl Fn(f64) -> bool) -> Option<f64> {
     let step = samples.windows(2).find(|pair| out(pair[0].1) != out(pair[1].1))?;
     let left = if out(step[0].1) { &step[0] } else { &step[1] };
     left.0.first().copied()
 }
 
-/// A default that is not what the leaders make at theirs: it is never seen.
+/// A default that differs from the value that the leaders' defaults determine: it has no effect.
 fn default_ignored(subject: &Inspected<'_>, id: CoordinateId) -> Option<Diagnostic> {
     let coordinate = subject.model.coordinate(id);
     let (stated, made) = (coordinate.default[0], subject.rest.coordinate(subject.model, id)[0]);
@@ -87,7 +89,7 @@ fn default_ignored(subject: &Inspected<'_>, id: CoordinateId) -> Option<Diagnost
         "lint/follower-default",
         [Subject::Coordinate(key.clone())],
         format!(
-            "the default of `{key}`, {}, is never taken: its leaders make it {} at their defaults",
+            "the default of `{key}`, {}, has no effect: its leaders set it to {} at their defaults",
             subject.shown(id, stated),
             subject.shown(id, made)
         ),
@@ -95,7 +97,7 @@ fn default_ignored(subject: &Inspected<'_>, id: CoordinateId) -> Option<Diagnost
     ))
 }
 
-/// Longer chains are named by their beginning.
+/// Of longer chains only the first members are named.
 const LONGEST_NAMED: usize = 8;
 
 /// A follower of a follower.
@@ -127,7 +129,7 @@ fn chain(subject: &Inspected<'_>, id: CoordinateId, source: Signal) -> Option<Di
         "lint/coupling-chain",
         names.iter().cloned().map(Subject::Coordinate),
         format!("`{}`", names.join("` follows `")),
-        "other programs solve such chains less exactly; couple to the first leader if that is meant",
+        "other programs solve such chains less exactly; couple to the first leader where possible",
     ))
 }
 

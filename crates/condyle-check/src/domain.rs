@@ -1,4 +1,4 @@
-//! Functions of knots, and the arguments that ranges let them have.
+//! Functions defined by knots, and the arguments that ranges allow.
 //!
 //! Beyond its last knot a spline is extrapolated linearly, where nothing was measured: the range of the
 //! coordinate that drives it promises more than the function knows.
@@ -10,19 +10,19 @@ use condyle_model::component::{Component, Signal};
 use condyle_model::{CoordinateId, CoordinateKind};
 use std::collections::BTreeMap;
 
-/// Past the knots by less than this part of their span is rounding of the file.
+/// An argument beyond the knots by less than this fraction of their span is rounding in the file.
 const ROUNDING: f64 = 2e-3;
 
 /// One function that is used beyond its knots on one side.
 struct Beyond {
-    /// Who makes the number.
+    /// The function's name in messages.
     function: String,
     /// The last knot there.
     knot: f64,
-    /// The argument that lies farthest out, and what the leader is then.
+    /// The argument farthest beyond the knot, and the leader's value there.
     argument: f64,
     leader: f64,
-    /// How far the function runs on from its value at the knot, and what it makes.
+    /// How far the extrapolated value is from that at the knot, and its kind.
     drift: f64,
     makes: CoordinateKind,
     /// Whether the argument is the leading coordinate's own value.
@@ -84,7 +84,7 @@ fn made(subject: &Inspected<'_>, component: usize, output: usize) -> CoordinateK
     follower.map_or(CoordinateKind::Other, |c| c.kind)
 }
 
-/// A function by what it makes: a coordinate that follows it, or its component.
+/// The name of a function: the coordinate that follows it, or its component.
 fn name_of(subject: &Inspected<'_>, component: usize, set: &str) -> String {
     let follower = subject.model.coordinate_ids().find(|&id| {
         matches!(subject.model.coordinate(id).follows, Some(Signal::Output(made, _))
@@ -96,7 +96,7 @@ fn name_of(subject: &Inspected<'_>, component: usize, set: &str) -> String {
     }
 }
 
-/// A function that is the same everywhere, whatever its knots.
+/// Whether a function is constant, whatever its knots.
 fn is_flat(function: &Function) -> bool {
     let Some((first, last)) = function.domain() else { return true };
     let slope = |x: f64| function.value_and_slope(x).1.abs();

@@ -1,29 +1,28 @@
-//! What is odd in a model, or in a motion of it, although it can be read and posed.
+//! Checks of models and motions that can be read and posed but are inconsistent or implausible.
 //!
-//! A family of rules, one file for each subject. Every rule looks at a model and answers with
-//! [`Diagnostic`]s; it changes nothing and never fails. Rules speak of what a file says against itself:
-//! a range against the knots of a spline, a left side against a right one, a default against its
-//! range. None of them knows what a human body can do, for that is what limits with a source are
-//! for.
+//! One file for each group of rules. Every rule inspects a model and returns [`Diagnostic`]s; it
+//! changes nothing and never fails. Rules report contradictions inside a file: a range that exceeds
+//! the knots of a spline, a left side that differs from the right one, a default outside its range.
+//! No rule encodes what a human body can do; limits with a source do that.
 //!
-//! | file | what it looks at |
+//! | file | what it checks |
 //! | --- | --- |
-//! | `range` | limits that cross, that are none, that look like degrees; defaults outside them |
+//! | `range` | limits that cross, have no effect or look like degrees; defaults outside them |
 //! | `domain` | functions used beyond their knots |
-//! | `coupling` | followers: ranges that leaders break, chains, coordinates that move nothing |
+//! | `coupling` | followers driven out of their range, chains, coordinates that move nothing |
 //! | `limit` | cones whose projection jumps inside declared ranges, contacts that do not touch |
-//! | `rotation` | axes that coincide, at rest or inside a range |
-//! | `place` | far joints and markers, markers in one place |
+//! | `rotation` | axes that are parallel, in the default pose or inside a range |
+//! | `place` | joints and markers far from their segment, markers at the same point |
 //! | `closure` | loops that are open in the default pose |
 //! | `names` | names that differ by case or spaces only |
 //! | `symmetry` | left against right |
 //! | [`motion`] | a motion against its model |
 //!
-//! To add a rule: a function in the file of its subject, called in that file's `check`; a row in its
-//! tests with a model that breaks it and one that does not.
+//! To add a rule, write a function in the file of its subject and call it in that file's `check`;
+//! add tests with a model that violates it and with one that does not.
 //!
 //! A finding is an *error* if the model contradicts itself, or a motion leaves a range that is
-//! enforced; a *warning* if it is unlikely to be meant; a *note* if it is worth knowing.
+//! enforced; a *warning* if it is probably a mistake; a *note* if it is worth knowing.
 
 mod closure;
 mod coupling;
@@ -42,7 +41,7 @@ use condyle_model::model::{CROSSING_RANGE, DEFAULT_OUTSIDE_RANGE, LOOKS_LIKE_DEG
 use condyle_model::{CoordinateId, CoordinateKind, Mode, Model, Pose, Program};
 use reach::Reach;
 
-/// Codes of readers whose findings a rule of this family repeats, with names and numbers.
+/// Codes of reader warnings that a rule of this crate repeats with names and numbers.
 const REPEATED: [&str; 3] = [CROSSING_RANGE, DEFAULT_OUTSIDE_RANGE, LOOKS_LIKE_DEGREES];
 
 fn finding(
@@ -98,7 +97,7 @@ pub fn check(model: &Model, warnings: &[Diagnostic]) -> Vec<Diagnostic> {
     findings
 }
 
-/// A model with what most rules ask of it.
+/// A model with the data that most rules need.
 struct Inspected<'m> {
     model: &'m Model,
     program: Program,
@@ -133,7 +132,7 @@ impl<'m> Inspected<'m> {
     }
 }
 
-/// Limits beyond this, in radians or metres, say only that there is none.
+/// A limit beyond this, in radians or metres, means that there is no limit.
 const NO_LIMIT: f64 = 1000.0;
 
 /// Both limits of a coordinate, if they limit anything.
@@ -146,7 +145,7 @@ fn real_range(model: &Model, id: CoordinateId) -> Option<(f64, f64)> {
     real.then_some((lower, upper))
 }
 
-/// What differs by less than this is the same on paper: 0.01 degrees, 0.01 mm.
+/// Values that differ by less than this count as equal: 0.01 degrees, 0.01 mm.
 fn tolerance(kind: CoordinateKind) -> f64 {
     match kind {
         CoordinateKind::Rotation | CoordinateKind::Orientation => 0.01f64.to_radians(),

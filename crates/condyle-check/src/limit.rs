@@ -5,7 +5,8 @@ use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_model::CoordinateKind;
 use condyle_model::component::{Component, JointCone, Signal, Swinging};
 
-/// A projection that jumps within this of a posture may do so in it: half a degree.
+/// A posture within this distance, in radians, of a discontinuity of the projection is reported:
+/// half a degree.
 const NEAR: f64 = 0.0087;
 
 /// Samples of each angle's range.
@@ -14,7 +15,7 @@ const STEPS: usize = 13;
 /// A gap below this is rounding in a file: 0.01 mm.
 const TOUCHING: f64 = 1e-5;
 
-/// Cones whose projection may jump inside the declared ranges, contacts that do not touch at rest.
+/// Cones whose projection jumps inside the declared ranges, contacts that do not touch by default.
 pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     for named in subject.model.components() {
         if let Component::Cone(cone) = &named.component {
@@ -29,7 +30,7 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
             let model = subject.model;
             let named = &model.components()[id.index()];
             let name = &named.name;
-            let side = if gap > 0.0 { "off" } else { "inside" };
+            let side = if gap > 0.0 { "outside" } else { "inside" };
             findings.push(finding(
                 Severity::Warning,
                 "lint/no-contact",
@@ -41,7 +42,7 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     }
 }
 
-/// The posture inside the declared ranges that is nearest to a jump of the projection.
+/// The posture inside the declared ranges that is nearest to a discontinuity of the projection.
 fn jump(subject: &Inspected<'_>, name: &str, cone: &JointCone) -> Option<Diagnostic> {
     let sources: &[Signal] = match &cone.of {
         Swinging::Angles(sources, _) => sources,

@@ -1,8 +1,8 @@
 //! A motion against its model: where it leaves ranges, contradicts couplings, opens loops or jumps.
 //!
-//! What is judged is the value that takes effect: a follower is judged as its leaders make it, and
-//! where the file says otherwise that is a finding of its own. Cells that are blank, and coordinates
-//! without a column, are not judged.
+//! Effective values are checked: a follower has the value that its leaders determine, and a column
+//! that differs from it is a separate finding. Blank cells, and coordinates without a column, are
+//! not checked.
 
 use super::closure::{Gap, gaps};
 use super::{amount, finding, length, listed, real_range, rounded, tolerance};
@@ -16,7 +16,7 @@ use condyle_motion::columns::{cells, coordinate_name};
 use condyle_motion::{AngleUnit, Table};
 use std::f64::consts::{PI, TAU};
 
-/// Turning by more than this in one frame is no movement of a body.
+/// A rotation by more than this from one frame to the next is reported as a jump.
 const JUMP: f64 = PI / 3.0;
 
 /// A coupled value may differ by this: a tenth of a degree, a tenth of a millimetre.
@@ -41,7 +41,7 @@ pub struct Violation {
     pub nearest: f64,
 }
 
-/// All that one coordinate did outside its range.
+/// All frames in which one coordinate is outside its range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outside {
     /// The coordinate.
@@ -58,7 +58,7 @@ pub struct Outside {
     pub source: String,
 }
 
-/// A follower whose column says something else than its leaders make it.
+/// A follower whose column differs from the value that its leaders determine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Disagreement {
     /// The follower.
@@ -69,9 +69,9 @@ pub struct Disagreement {
     pub frame: usize,
     /// Its time in seconds.
     pub time: f64,
-    /// What the file says there.
+    /// The value in the file in that frame.
     pub value: f64,
-    /// What its leaders make it.
+    /// The value that its leaders determine.
     pub expected: f64,
 }
 
@@ -108,7 +108,7 @@ pub struct Jump {
     pub wrap: bool,
 }
 
-/// What a motion does against its model.
+/// The result of checking a motion against its model.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct MotionCheck {
     /// How many frames there are.
@@ -117,7 +117,7 @@ pub struct MotionCheck {
     pub violations: Vec<Violation>,
     /// The same for each coordinate, the farthest out (for its kind) first.
     pub outside: Vec<Outside>,
-    /// Followers that the file contradicts.
+    /// Followers whose columns contradict their leaders.
     pub disagreements: Vec<Disagreement>,
     /// Loops that are open.
     pub open_loops: Vec<OpenLoop>,
@@ -125,15 +125,15 @@ pub struct MotionCheck {
     pub jumps: Vec<Jump>,
     /// Coordinates without a column that nothing else determines.
     pub missing: Vec<CoordinateId>,
-    /// Columns that are no coordinate.
+    /// Columns that match no coordinate.
     pub unknown: Vec<String>,
     /// Cells of coordinates that hold no number.
     pub blank: usize,
-    /// All of it in sentences.
+    /// All of it as diagnostics.
     pub findings: Vec<Diagnostic>,
 }
 
-/// Where a limit comes from, in words.
+/// The source of a limit, as text.
 fn source(model: &Model, id: CoordinateId) -> String {
     let coordinate = model.coordinate(id);
     let held = if coordinate.range.enforced { "enforced" } else { "declared, not enforced" };
@@ -213,7 +213,7 @@ pub fn check(model: &Model, table: &Table) -> MotionCheck {
                 check.jump(model, id, frame, time, before, stored);
             }
         }
-        // Blank cells are no numbers to jump from.
+        // A blank cell is no value to compare with.
         let marked = stored.iter().zip(&given).map(|(&v, &g)| if g { v } else { f64::NAN });
         before = Some(marked.collect());
         if !rows.is_empty() {
@@ -245,7 +245,7 @@ fn judged(model: &Model, given: &[CoordinateId]) -> Vec<bool> {
 }
 
 impl MotionCheck {
-    /// Columns that are missing, and columns that are no coordinate.
+    /// Columns that are missing, and columns that match no coordinate.
     fn columns(&mut self, model: &Model, table: &Table, cells: &[(CoordinateId, Option<usize>)]) {
         let free = |id: CoordinateId| {
             let coordinate = model.coordinate(id);
@@ -421,8 +421,8 @@ impl MotionCheck {
                 "motion/coupled",
                 [Subject::Coordinate(key(d.coordinate))],
                 format!(
-                    "`{}` is not what its leaders make it in {}; most in frame {} ({} s): {} instead \
-                     of {}",
+                    "`{}` differs from the value that its leaders determine in {}; most in frame \
+                     {} ({} s): {} instead of {}",
                     key(d.coordinate),
                     frames(d.frames),
                     d.frame,
@@ -482,10 +482,10 @@ impl MotionCheck {
                 "motion/units",
                 [],
                 format!(
-                    "the file does not say degrees, and angles reach {} radians",
+                    "the file does not state degrees, but angles reach {} radians",
                     rounded(far, 1)
                 ),
-                "if they are degrees, say inDegrees=yes in the header",
+                "if they are degrees, write inDegrees=yes in the header",
             ));
         }
         self.findings = findings;
@@ -501,8 +501,11 @@ impl MotionCheck {
                 let count = own().count();
                 let times = if count == 1 { "once".to_owned() } else { format!("{count} times") };
                 let (what, help) = match wrap {
-                    true => ("wraps around", "add or take 360° to make it continuous"),
-                    false => ("jumps", "no body turns by 60° in one frame: was a frame lost?"),
+                    true => ("wraps around", "add or subtract 360° to make it continuous"),
+                    false => (
+                        "jumps",
+                        "a rotation by 60° in one frame is implausible: is a frame missing?",
+                    ),
                 };
                 findings.push(finding(
                     Severity::Warning,
@@ -520,14 +523,14 @@ impl MotionCheck {
         }
     }
 
-    /// Whether anything counts against the motion.
+    /// Whether the motion passes the check: no finding is an error or a warning.
     pub fn holds(&self) -> bool {
         !self.findings.iter().any(super::counts)
     }
 }
 
 impl OpenLoop {
-    /// How far it is open, for people.
+    /// The gap as text.
     pub fn shown(&self) -> String {
         if self.metres > 0.0 && self.radians == 0.0 {
             length(self.metres)
@@ -537,7 +540,7 @@ impl OpenLoop {
     }
 }
 
-/// The greatest angle of a motion, either way.
+/// The greatest absolute angle of a motion.
 fn farthest_angle(model: &Model, motion: &Motion) -> f64 {
     let mut most = 0.0f64;
     for id in model.coordinate_ids() {

@@ -1,4 +1,4 @@
-//! Names that people, and programs that ignore case, take for each other.
+//! Names that people, and programs that ignore case, may confuse.
 
 use super::{Inspected, finding};
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
@@ -38,7 +38,7 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
             places.next().is_some_and(|first| places.all(|place| place == first))
         };
         for names in alike.into_values().filter(|names| names.len() > 1) {
-            // Two names for one place may be taken for each other.
+            // Confusing two names of the same point does no harm.
             if what == "markers" && one_place(&names) {
                 continue;
             }

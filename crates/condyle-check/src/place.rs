@@ -1,14 +1,15 @@
-//! Where joints and markers stand.
+//! Positions of joints and markers.
 
 use super::{Inspected, finding, length};
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_model::SegmentId;
 use std::collections::HashMap;
 
-/// Joints farther than this from their segment's origin were placed in millimetres.
+/// Joints farther than this from their segment's origin, in metres, were probably given in
+/// millimetres.
 const FARTHEST_JOINT: f64 = 10.0;
 
-/// Markers farther than this from their segment's origin are on no body.
+/// Markers farther than this from their segment's origin, in metres, are implausible.
 const FARTHEST_MARKER: f64 = 1.0;
 
 pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
@@ -54,7 +55,7 @@ fn markers(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     }
 }
 
-/// Markers of one segment in one place.
+/// Markers of one segment at the same point.
 fn twins(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     type Spot = (Option<SegmentId>, [i64; 3]);
     let mut at: HashMap<Spot, Vec<&str>> = HashMap::new();

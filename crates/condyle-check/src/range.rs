@@ -5,7 +5,7 @@ use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_model::{CoordinateId, CoordinateKind};
 use std::f64::consts::PI;
 
-/// Limits that cross, limits that are none, limits in degrees, defaults outside.
+/// Limits that cross, limits without effect, limits in degrees, defaults outside their range.
 pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     for id in subject.model.coordinate_ids() {
         if subject.kind(id) == CoordinateKind::Orientation {
@@ -38,7 +38,7 @@ fn crossing(subject: &Inspected<'_>, id: CoordinateId, lower: f64, upper: f64) -
     )
 }
 
-/// Limits in degrees instead of radians: too far for a joint, round, and within a turn.
+/// Whether limits look like degrees: too large for a joint, whole numbers, and at most 360.
 fn degrees(limits: &[f64]) -> bool {
     let most = limits.iter().fold(0.0f64, |most, l| most.max(l.abs()));
     let whole = |l: &f64| (l - l.round()).abs() < 1e-9;
@@ -92,7 +92,7 @@ fn size(subject: &Inspected<'_>, id: CoordinateId) -> Option<Diagnostic> {
     ))
 }
 
-/// A default that its own range forbids, of a coordinate that may be chosen.
+/// A default outside its own range, of a coordinate that follows no other.
 fn default(subject: &Inspected<'_>, id: CoordinateId) -> Option<Diagnostic> {
     let coordinate = subject.model.coordinate(id);
     let value = coordinate.default[0];

@@ -1,8 +1,8 @@
-//! Which values the scalars of a model take while their leaders run through their ranges.
+//! The values that the scalars of a model take while their leaders vary over their ranges.
 //!
-//! Laws of scalars are few and small, so they are run here one by one, in the order in which they
-//! need each other, at samples of the leaders: every sample is a value that the model really takes,
-//! and with one leader it is known which of its values does it.
+//! Scalar laws are few and small, so they are evaluated here one by one, in order of dependency, at
+//! samples of the leaders: every sample is a value that the model really takes, and with a single
+//! leader the leader's value that causes it is known.
 
 use super::real_range;
 use condyle_model::component::{Component, Signal, Swinging};
@@ -19,7 +19,7 @@ const SEVERAL: usize = 4096;
 /// A scalar with more leaders than this is not sampled, and its leaders beyond are not named.
 const MOST_LEADERS: usize = 32;
 
-/// How many scalars are computed in all: some seconds. No real model comes near it.
+/// The most scalars that are computed in total: a few seconds. Real models need far fewer.
 const BUDGET: usize = 20_000_000;
 
 /// The scalars of a model, in an order in which they can be computed.
@@ -74,7 +74,7 @@ impl<'m> Reach<'m> {
             leaders: vec![],
             left: Cell::new(BUDGET),
         };
-        // Depth first with a stack: a scalar is computed after all that it reads.
+        // Depth first with a stack: a scalar is computed after all its inputs.
         let mut seen = std::collections::HashSet::new();
         let mut stack: Vec<(Signal, bool)> = vec![];
         for source in wanted {
@@ -113,7 +113,7 @@ impl<'m> Reach<'m> {
         self.place.get(&source).map_or(&[], |&place| &self.leaders[place])
     }
 
-    /// Whether all that was asked for could be sampled.
+    /// Whether everything requested could be sampled.
     pub(super) fn finished(&self) -> bool {
         self.left.get() > 0
     }

@@ -1,4 +1,4 @@
-//! Axes of one joint that coincide: a direction in which it cannot turn.
+//! Axes of one joint that are parallel, so that it loses a rotational degree of freedom.
 
 use super::{Inspected, finding};
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
@@ -6,13 +6,13 @@ use condyle_math::{Mat3, Vec3};
 use condyle_model::component::{Component, Signal};
 use std::f64::consts::PI;
 
-/// Axes nearer than this to each other are nearly one.
+/// Axes at less than this angle, in degrees, are nearly parallel.
 const NEARLY_PARALLEL: f64 = 5.0;
 
-/// Consecutive turns that stand at less than this from a right angle make a triple of Euler.
+/// Consecutive axes within this of a right angle, in degrees, form an Euler triple.
 const NEARLY_RIGHT: f64 = 0.5;
 
-/// One turn of a product, its axis in the frame of the joint when every turn stands at zero.
+/// One rotation of a product, its axis in the frame of the joint when every angle is zero.
 struct Turn {
     angle: Signal,
     axis: Vec3,
@@ -51,14 +51,14 @@ fn turns(subject: &Inspected<'_>, factors: &[Signal]) -> Vec<Turn> {
                 }
             }
             Component::Translate(_) => {}
-            // What turns in another way says nothing about axes after it.
+            // After any other rotation the directions of the axes are unknown.
             _ => turns.clear(),
         }
     }
     turns
 }
 
-/// The angle between two axes, whichever way they point, in degrees.
+/// The angle between two axes regardless of their sense, in degrees.
 fn between(a: Vec3, b: Vec3) -> f64 {
     a.cross(b).norm().atan2(a.dot(b).abs()).to_degrees()
 }
@@ -78,7 +78,7 @@ fn names(subject: &Inspected<'_>, turns: &[&Turn]) -> Vec<String> {
 
 fn parallel(subject: &Inspected<'_>, set: &str, a: &Turn, b: &Turn) -> Option<Diagnostic> {
     let angle = between(a.axis, b.axis);
-    // One coordinate that turns twice, or a follower with its leader, loses nothing.
+    // Two rotations by one coordinate, or by a follower and its leader, lose no freedom.
     let own = |turn: &Turn| subject.reach.leaders(turn.angle);
     let shared = own(a).iter().any(|leader| own(b).contains(leader));
     if angle >= NEARLY_PARALLEL || shared {
@@ -98,7 +98,7 @@ fn parallel(subject: &Inspected<'_>, set: &str, a: &Turn, b: &Turn) -> Option<Di
     ))
 }
 
-/// Three turns whose outer axes come to lie on each other inside the range of the middle one.
+/// Three rotations whose outer axes become parallel inside the range of the middle one.
 fn singular(subject: &Inspected<'_>, set: &str, triple: &[Turn]) -> Option<Diagnostic> {
     let [a, m, c] = triple else { return None };
     let right = |a: Vec3, b: Vec3| (90.0 - between(a, b)).abs() < NEARLY_RIGHT;
@@ -109,7 +109,7 @@ fn singular(subject: &Inspected<'_>, set: &str, triple: &[Turn]) -> Option<Diagn
     if leaders[0] == leaders[1] || leaders[1] == leaders[2] || leaders[0] == leaders[2] {
         return None;
     }
-    // a · R(m, t) c = A cos t + B sin t, which is ±1 where the outer axes coincide.
+    // a · R(m, t) c = A cos t + B sin t, which is ±1 where the outer axes are parallel.
     let at = a.axis.dot(m.axis.cross(c.axis)).atan2(a.axis.dot(c.axis));
     let taken = subject.reach.taken(m.angle)?;
     let [least, greatest] = taken.extremes()?;
@@ -134,8 +134,8 @@ fn singular(subject: &Inspected<'_>, set: &str, triple: &[Turn]) -> Option<Diagn
         "lint/singular-triple",
         names.into_iter().map(Subject::Coordinate),
         format!(
-            "the three rotations of joint `{set}` lose a direction where {middle} makes {shown}°, \
-             which lies inside its range"
+            "the three rotations of joint `{set}` lose a degree of freedom where {middle} is \
+             {shown}°, which lies inside its range"
         ),
         "near that posture only the sum or difference of the outer two angles is determined",
     ))

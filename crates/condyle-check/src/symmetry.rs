@@ -12,13 +12,13 @@ use condyle_math::Vec3;
 use condyle_model::{CoordinateId, CoordinateKind, Jacobian, Model, Pose, SegmentId};
 use std::collections::HashMap;
 
-/// Joints of a scaled subject differ by a few millimetres, and mean it.
+/// The joints of a scaled subject may well differ by a few millimetres.
 const PLACES_DIFFER: f64 = 5e-3;
 
-/// Ranges that differ by less are rounded differently.
+/// Ranges that differ by less than this differ by rounding only.
 const RANGES_DIFFER: f64 = 2e-3;
 
-/// Axes are copied from side to side, not measured.
+/// In degrees; small, as axes are copied from side to side, not measured.
 const AXES_DIFFER: f64 = 1.0;
 
 pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
@@ -26,7 +26,7 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     let names: Vec<&str> = model.segments().iter().map(|s| s.name.as_str()).collect();
     let ids: Vec<SegmentId> = model.segment_ids().collect();
     let (pairs, alone) = paired(&names);
-    // Where one side hangs on a part that the other has not, their places cannot be compared.
+    // Where one side has a parent that the other lacks, their positions cannot be compared.
     let segments: Vec<[SegmentId; 2]> = pairs
         .iter()
         .map(|&[r, l]| [ids[r], ids[l]])
@@ -54,7 +54,7 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
 const SIDES: [[&str; 2]; 5] =
     [["r", "l"], ["R", "L"], ["right", "left"], ["Right", "Left"], ["RIGHT", "LEFT"]];
 
-/// Whether a name is of the right side, and its name on the other; none without a side.
+/// Whether a name belongs to the right side, and the name on the other; none without a side.
 fn mirrored(name: &str) -> Option<(bool, String)> {
     let mut right = None;
     let mut text = String::with_capacity(name.len());
@@ -70,7 +70,7 @@ fn mirrored(name: &str) -> Option<(bool, String)> {
                 text.push_str(other);
                 text.push_str(&piece[word.len()..]);
             }
-            // Both sides in one name is neither.
+            // A name with both sides belongs to neither.
             Some(_) => return None,
             None => text.push_str(piece),
         }
@@ -131,7 +131,7 @@ fn coordinate_pairs(model: &Model) -> (Vec<[CoordinateId; 2]>, Vec<CoordinateId>
     (pairs, alone)
 }
 
-/// Whether two segments hang on one parent, or on the two sides of a pair.
+/// Whether two segments have the same parent, or parents that form a pair.
 fn alike_parents(model: &Model, pair: [SegmentId; 2]) -> bool {
     let [r, l] = pair.map(|id| model.segment(id).parent);
     let name = |id: Option<SegmentId>| id.map(|id| model.segment(id).name.as_str());
@@ -154,19 +154,22 @@ fn missing(
         Severity::Note,
         "lint/side-missing",
         names.iter().cloned().map(subject),
-        format!("{what}{s} {} {has} no other side, as {pairs} others have", super::listed(&names)),
+        format!(
+            "{what}{s} {} {has} no counterpart on the other side, unlike {pairs} pairs",
+            super::listed(&names)
+        ),
         "is a name misspelt, or is this side modelled in more detail?",
     ));
 }
 
-/// How segments stand and move in their parents when every coordinate is 0.
+/// Position and motion of segments in their parents when every coordinate is 0.
 struct Motions<'s> {
     subject: &'s Inspected<'s>,
     pose: Pose,
     jacobian: Jacobian,
 }
 
-/// A vector in the mirror across one axis.
+/// A vector mirrored along one axis.
 fn reflected(v: Vec3, plane: usize) -> Vec3 {
     let mut v = v.to_array();
     v[plane] = -v[plane];
@@ -195,7 +198,7 @@ impl<'s> Motions<'s> {
         parent.linear.transpose() * gap
     }
 
-    /// The axis that a pair's mirror stands across, if most pairs have one.
+    /// The axis normal to the mirror plane, if one plane fits most pairs.
     fn plane(&self, pairs: &[[SegmentId; 2]]) -> Option<usize> {
         let misfit = |plane: usize| -> f64 {
             let gap = |&[r, l]: &[SegmentId; 2]| {
@@ -209,7 +212,7 @@ impl<'s> Motions<'s> {
         (2 * fits > pairs.len()).then_some(best)
     }
 
-    /// By how much the left joint stands elsewhere than in the mirror, if it does.
+    /// The distance of the left joint from the mirror image of the right one, if it matters.
     fn misplaced(&self, plane: usize, [right, left]: [SegmentId; 2]) -> Option<f64> {
         let (r, l) = (self.place(right), self.place(left));
         let gap = (reflected(r, plane) - l).norm();
@@ -237,7 +240,7 @@ impl<'s> Motions<'s> {
                     name(left),
                     length(gap)
                 ),
-                "turn the sign of the coordinate that points sideways",
+                "reverse the sign of the lateral coordinate",
             ));
         }
         differ.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -253,11 +256,11 @@ impl<'s> Motions<'s> {
                 pairs.len(),
                 length(*most)
             ),
-            "subjects differ from side to side; a model made by hand should not",
+            "a subject may be asymmetric; a generic model should not be",
         ));
     }
 
-    /// Unit direction of a coordinate in its parent: an axis of rotation, or a way.
+    /// Unit direction of a coordinate in its parent: of its rotation axis or of its translation.
     fn direction(&self, id: CoordinateId) -> Option<Vec3> {
         let model = self.subject.model;
         let coordinate = model.coordinate(id);
@@ -310,7 +313,7 @@ impl<'s> Motions<'s> {
                 Some(along > 0.0)
             })
             .collect();
-        // Where most axes are no mirror images the frames are not, and nothing is known.
+        // Where most axes are not mirror images, the frames are not either: nothing is known.
         let known = senses.iter().filter(|sense| sense.is_some()).count();
         if known < 2 * odd.len() {
             return vec![None; pairs.len()];
@@ -325,7 +328,7 @@ impl<'s> Motions<'s> {
                     "the axes of `{right}` and `{left}` are not mirror images: {}° apart",
                     super::rounded(angle, 2)
                 ),
-                "mirror the axis: a sign is often forgotten",
+                "mirror the axis: often a sign is missing",
             ));
         }
         senses
@@ -364,8 +367,10 @@ fn ranges(
     };
     let both = format!("{}, {}", range(right, r), range(left, l));
     let message = match sense {
-        Some(true) if negated => format!("{both}: mirrored twice, as their axes are mirrored too"),
-        Some(false) if same => format!("{both}: the same although one counts backwards"),
+        Some(true) if negated => {
+            format!("{both}: negated, although their axes are mirrored already")
+        }
+        Some(false) if same => format!("{both}: equal, although their signs are opposite"),
         _ => format!("{both}: the sides have different ranges"),
     };
     let enforced = [right, left].iter().any(|&id| subject.model.coordinate(id).range.enforced);
@@ -374,11 +379,11 @@ fn ranges(
         "lint/uneven-ranges",
         [subject.key(right), subject.key(left)].map(Subject::Coordinate),
         message,
-        "give both sides one range, unless a subject's own was measured",
+        "give both sides the same range, unless they were measured on a subject",
     ))
 }
 
-/// One note about all defaults that differ: a model may rest in the middle of a stride.
+/// One note about all defaults that differ: the default pose may be in mid-stride.
 fn defaults(
     subject: &Inspected<'_>,
     pairs: &[[CoordinateId; 2]],
@@ -418,7 +423,7 @@ fn defaults(
         "lint/uneven-defaults",
         [],
         format!(
-            "{} of {} defaults differ from side to side; most of all {worst}",
+            "{} of {} defaults differ from side to side; the largest difference is {worst}",
             differ.len(),
             pairs.len()
         ),

@@ -1,4 +1,4 @@
-//! Why a command could not be carried out, and warnings on the way.
+//! Why a command failed, and warnings.
 
 use condyle::formats::document;
 use condyle::open::{Cause, OpenError, located};

@@ -1,7 +1,7 @@
 //! The `condyle` command.
 //!
-//! Exit codes: 0 done; 1 the input was read but what was asked does not hold; 2 unusable arguments
-//! or input. Results go to standard output or `-o`, everything else to standard error.
+//! Exit codes: 0 success; 1 the input was read but a requested condition does not hold; 2 unusable
+//! arguments or input. Results go to standard output or `-o`, everything else to standard error.
 
 mod commands;
 mod failure;

@@ -1,4 +1,4 @@
-//! In which format something is written.
+//! The format in which something is written.
 
 use crate::failure::{Failure, warned};
 use clap::builder::PossibleValuesParser;

@@ -1,4 +1,4 @@
-//! Where results go.
+//! Output of results.
 
 use crate::failure::Failure;
 use std::io::Write;
@@ -24,7 +24,7 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     })
 }
 
-/// Writes to standard output; a reader that went away is no error.
+/// Writes to standard output; a closed pipe is no error.
 pub(crate) fn print(bytes: &[u8]) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
@@ -62,7 +62,7 @@ pub(crate) fn columns(rows: &[Vec<String>]) -> String {
     text
 }
 
-/// A head and names after it, in lines of at most 96 letters; further lines stand under the names.
+/// A head and names after it, in lines of at most 96 characters; further lines are indented.
 pub(crate) fn wrapped(head: &str, names: &[&str]) -> String {
     const WIDTH: usize = 96;
     let mut text = format!("  {head}");

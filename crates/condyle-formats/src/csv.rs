@@ -1,10 +1,10 @@
-//! CSV, the table every program reads.
+//! CSV tables.
 //!
-//! Written: a line of names, `time` first, then rows; numbers as short as they read back the
-//! same, blank cells for NaN, names quoted where they must be. Read: the same, with commas,
+//! Written: a line of names, `time` first, then rows; numbers with the shortest decimals that read
+//! back the same, blank cells for NaN, names quoted where necessary. Read: the same, with commas,
 //! semicolons or tabs, quotes, and lines that start with `#` before the names (`# key=value`
-//! is kept). CSV has no place for a unit: [`Table::angle_unit`] is unstated, unless a line
-//! `# inDegrees=yes` says it.
+//! is kept). CSV has no field for a unit: [`Table::angle_unit`] is unstated, unless a line
+//! `# inDegrees=yes` states it.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -94,7 +94,7 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Read<Table>, Error> {
     read_decoded(bytes, read)
 }
 
-/// Writes a table: `time`, then its columns, under a remark if its angles are in degrees.
+/// Writes a table: `time`, then its columns, after a comment line if its angles are in degrees.
 ///
 /// # Errors
 ///
@@ -137,8 +137,8 @@ pub fn write(table: &Table) -> Result<String, Error> {
     Ok(text)
 }
 
-/// Writes how far each marker was from its place: rows of time in seconds, marker, and error in
-/// metres, under the names `time,marker,error_m`.
+/// Writes the error of each marker: rows of time in seconds, marker, and error in metres, under the
+/// names `time,marker,error_m`.
 ///
 /// ```
 /// use condyle_formats::csv;
@@ -175,7 +175,7 @@ fn delimiter_of(names: &str) -> char {
             *count += usize::from(!inside && c == *delimiter);
         }
     }
-    // The first of equals: a comma.
+    // Of equal counts the first separator, a comma, wins.
     counts.iter().rev().max_by_key(|(_, count)| *count).map_or(',', |(delimiter, _)| *delimiter)
 }
 
@@ -228,7 +228,7 @@ fn cells(line: Line<'_>, delimiter: char) -> Result<Vec<String>, Error> {
     }
 }
 
-/// How long the name of a column may be.
+/// The maximum length of a column's name, in characters.
 const MOST_LETTERS: usize = 1000;
 
 fn check_names(names: &[String], line: Line<'_>) -> Result<(), Error> {
@@ -246,11 +246,7 @@ fn check_names(names: &[String], line: Line<'_>) -> Result<(), Error> {
         if let Some(first) = seen.insert(name.as_str(), index) {
             return Err(Error::new(
                 "csv/duplicate-column",
-                format!(
-                    "two columns are called `{name}`, the {}. and the {}.",
-                    first + 1,
-                    index + 1
-                ),
+                format!("two columns are called `{name}`: columns {} and {}", first + 1, index + 1),
             )
             .at(line.place())
             .with_help("rename one of them"));
@@ -283,7 +279,7 @@ fn add_row(
             )
         });
     }
-    // Where another sign separates cells, a comma can only mark decimals.
+    // Where another character separates cells, a comma can only be the decimal separator.
     let with_comma = |cell: &str| {
         (delimiter != ',' && cell.matches(',').count() == 1 && !cell.contains('.'))
             .then(|| number(&cell.replace(',', ".")))
@@ -324,7 +320,7 @@ fn add_row(
     table.times.push(time);
     if commas > 0 {
         warnings.add("csv/decimal-comma", || {
-            Diagnostic::warning("csv/decimal-comma", "decimals are marked by commas")
+            Diagnostic::warning("csv/decimal-comma", "the decimal separator is a comma")
                 .at(line.place())
         });
     }
@@ -364,7 +360,7 @@ mod tests {
             ("", "line 1: there is no line of names (the first line must name the columns)"),
             ("time,a\n0,abc\n", "line 2, column 3: `abc` in column `a` is not a number"),
             ("time,a\n0,1,2\n", "line 2: the row has too many cells (expected 2, found 3)"),
-            ("time,a,a\n", "line 1: two columns are called `a`, the 1. and the 2."),
+            ("time,a,a\n", "line 1: two columns are called `a`: columns 1 and 2"),
             ("0,1\n", "line 1: the first line holds numbers"),
             ("time,a\n1,1\n0,1\n", "line 3: time goes back from 1 s to 0 s"),
             ("time,a\0b\n", "line 1: the name of column 1 has 3 letters or is binary"),

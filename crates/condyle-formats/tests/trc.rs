@@ -117,7 +117,7 @@ fn counts_in_the_header_do_not_rule() {
     assert_eq!(read.value.frames(), 2);
     assert_eq!(
         read.warnings[0].to_string(),
-        "line 3: NumFrames says 1, 2 rows follow (the rows are right)"
+        "line 3: NumFrames is 1, but 2 rows follow (the rows are used)"
     );
     let read = with("mm", "A\t\t\tB\t\t\tC", "", "1\t0\t1\t2\t3\t4\t5\t6\t7\t8\t9\n").unwrap();
     assert_eq!(
@@ -214,7 +214,7 @@ fn the_rate_may_come_from_the_times() {
     assert_eq!(read.value.rate, 100.0);
     assert_eq!(
         read.warnings[0].to_string(),
-        "DataRate says 100 Hz, the times say 50.000 Hz (frames are taken at their times)"
+        "DataRate is 100 Hz, but the times give 50.000 Hz (the times are used)"
     );
 }
 
@@ -272,7 +272,7 @@ fn faults_say_where_and_what_would_be_right() {
         ),
         (
             "1\t0\t1,5\t2\t3\n",
-            "line 7, column 5: `1,5` is not a number (write 1.5: decimals are marked by a point)",
+            "line 7, column 5: `1,5` is not a number (write 1.5: the decimal separator is a point)",
         ),
         (
             "1\t0\t1\t2\t3\t4\t5\t6\t7\n",

@@ -2,13 +2,13 @@
 //!
 //! A column holds a coordinate if its name is the coordinate's key, or a path whose last parts are
 //! the joint set and the coordinate (`/jointset/knee_r/knee_angle_r/value`). Parts of a path are
-//! compared whole: `left_knee/angle` holds nothing of a joint set `knee`.
+//! compared whole: `left_knee/angle` does not belong to a joint set `knee`.
 
 use crate::{AngleUnit, Table};
 use condyle_model::{CoordinateId, CoordinateKind, Model};
 
-/// The coordinate whose value a column holds: the column's name, or what stands in its path
-/// before `/value`. None for a path that holds something else, such as a speed.
+/// The coordinate whose value a column holds: the column's name, or the part of its path before
+/// `/value`. None for a path of something else, such as a speed.
 ///
 /// ```
 /// use condyle_motion::columns::coordinate_name;
@@ -32,7 +32,7 @@ pub fn columns(model: &Model, id: CoordinateId) -> Vec<String> {
     parts(model, id).iter().map(|part| format!("{}{part}", model.coordinate_key(id))).collect()
 }
 
-/// What stands behind the key in the name of each column of a coordinate.
+/// The suffix after the key in the name of each column of a coordinate.
 fn parts(model: &Model, id: CoordinateId) -> &'static [&'static str] {
     match model.coordinate(id).kind {
         CoordinateKind::Orientation => &[".qx", ".qy", ".qz", ".qw"],
@@ -106,7 +106,7 @@ mod tests {
             let table = Table { columns, ..Table::default() };
             cells(&model, &table).iter().map(|cell| cell.column).collect()
         };
-        // `left_knee/angle` ends in the letters of `knee/angle`, and filled both.
+        // `left_knee/angle` ends in the characters of `knee/angle`, and was once read for both.
         assert_eq!(found(&["left_knee/angle"]), [None, Some(0)]);
         assert_eq!(found(&["/jointset/left_knee/angle/value"]), [None, Some(0)]);
         assert_eq!(found(&["/jointset/left_knee/angle/value", "knee/angle"]), [Some(1), Some(0)]);

@@ -1,27 +1,27 @@
-//! Two motions compared, coordinate by coordinate.
+//! Comparison of two motions, coordinate by coordinate.
 
 use crate::columns::{coordinate_name, found_columns};
 use crate::{AngleUnit, Between, Table, between};
 use condyle_math::Quat;
 use condyle_model::{CoordinateKind, Model};
 
-/// Times that differ by less are the same, in seconds: files give times with six digits or so.
+/// Times that differ by less, in seconds, are the same: files have times with about six digits.
 const SAME_TIME: f64 = 1e-6;
 
-/// What two tables have in common, and how far it is apart.
+/// What two tables have in common, and how much it differs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Comparison {
     /// First and last time that are compared, and how many times of A there are.
     pub time: [f64; 2],
     /// Rows of A that are compared.
     pub frames: usize,
-    /// What both hold, in the order of the model or of A.
+    /// The differences of what both hold, in the order of the model or of A.
     pub differences: Vec<Difference>,
     /// Names that only A, only B has.
     pub only: [Vec<String>; 2],
 }
 
-/// How far two series are apart: B minus A at the times of A.
+/// The difference of two series: B minus A at the times of A.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
     /// The coordinate's key, or the name of the column in A.
@@ -49,7 +49,7 @@ pub enum Incomparable {
     Times,
 }
 
-/// Where something that both motions hold stands in each.
+/// The columns of a quantity that both motions hold.
 struct Shared {
     name: String,
     unit: &'static str,
@@ -59,16 +59,16 @@ struct Shared {
     factors: [f64; 2],
 }
 
-/// What turns the numbers of a rotation into degrees; an unstated unit means radians.
+/// The factor that converts a rotation to degrees; an unstated unit means radians.
 fn to_degrees(table: &Table) -> f64 {
     if table.angle_unit == AngleUnit::Degrees { 1.0 } else { 1f64.to_degrees() }
 }
 
-/// Compares B with A at the times of A, B interpolated between its rows: straight, or along the
+/// Compares B with A at the times of A, B interpolated between its rows: linearly, or along the
 /// shortest arc for orientations.
 ///
 /// With a model, coordinates are compared, rotations in degrees; without one, columns of the same
-/// name as they are.
+/// name without conversion.
 ///
 /// # Errors
 /// [`Incomparable`] without a common name or time.
@@ -140,7 +140,7 @@ fn by_model(model: &Model, sides: [&Table; 2]) -> (Vec<Shared>, [Vec<String>; 2]
     (shared, only)
 }
 
-/// Columns of one name, compared as they are.
+/// Columns of the same name, compared without conversion.
 fn by_name([a, b]: [&Table; 2]) -> (Vec<Shared>, [Vec<String>; 2]) {
     let (mut shared, mut only) = (vec![], [vec![], vec![]]);
     let mut used = vec![false; b.columns.len()];

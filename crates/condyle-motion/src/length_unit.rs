@@ -1,6 +1,6 @@
-//! Units of length at the border of a file.
+//! Units of length in files.
 
-/// A unit of length at the border of a file; inside, lengths are metres.
+/// A unit of length in a file; in memory, lengths are in metres.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum LengthUnit {
     /// `m`
@@ -17,7 +17,7 @@ pub enum LengthUnit {
 }
 
 impl LengthUnit {
-    /// The unit of this name, in any of the spellings met in files.
+    /// The unit of this name, in any of the spellings found in files.
     ///
     /// ```
     /// use condyle_motion::LengthUnit;
@@ -42,7 +42,7 @@ impl LengthUnit {
         }
     }
 
-    /// The short name, as files write it.
+    /// The short name, as written in files.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -73,8 +73,8 @@ impl LengthUnit {
         }
     }
 
-    /// A length in metres, in this unit: of the neighbouring doubles that read back as the same
-    /// length the one with the shortest decimal, so that a file read and written keeps its digits.
+    /// A length in metres, in this unit: among the neighbouring doubles that read back as the same
+    /// length, the one with the shortest decimal, so that a file read and written keeps its digits.
     #[must_use]
     pub fn from_metres(self, length: f64) -> f64 {
         let near = match self {

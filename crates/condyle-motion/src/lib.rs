@@ -1,4 +1,4 @@
-//! Values of a body over time, whatever file they came from and wherever they go.
+//! Values of a body over time, independent of file formats.
 //!
 //! | type | what |
 //! | --- | --- |
@@ -6,10 +6,11 @@
 //! | [`Orientations`] | orientations of inertial sensors, frame by frame |
 //! | [`Table`] | columns of numbers by name, as a file has them: a motion of no stated model |
 //! | [`Motion`] | the coordinates of one model, frame by frame |
-//! | [`Posture`] | the coordinates of one model in one moment, set and read by coordinate |
+//! | [`Posture`] | the coordinates of one model at one time, set and read by coordinate |
 //!
-//! Inside, lengths are metres, angles radians, times seconds; what a file says otherwise is kept as
-//! [`LengthUnit`] and [`AngleUnit`]. [`columns`] ties columns to coordinates, [`difference`] compares two motions.
+//! In memory, lengths are in metres, angles in radians, times in seconds; other units of a file are
+//! recorded as [`LengthUnit`] and [`AngleUnit`]. [`columns`] assigns columns to coordinates,
+//! [`difference`] compares two motions.
 
 pub mod columns;
 pub mod difference;

@@ -20,8 +20,9 @@ pub const BLANK: &str = "motion/blank";
 impl Motion {
     /// A motion from a table whose columns are named after coordinates.
     ///
-    /// Degrees are converted for rotations only, and only where the table says degrees. Coordinates
-    /// without a column keep their defaults; columns that are no coordinate are reported.
+    /// Degrees are converted for rotations only, and only where the table states degrees.
+    /// Coordinates without a column keep their defaults; columns that match no coordinate are
+    /// reported.
     pub fn from_table(model: &Model, table: &Table) -> (Self, Vec<Diagnostic>) {
         let mut warnings = vec![];
         let mut used = vec![false; table.columns.len()];
@@ -83,8 +84,8 @@ impl Motion {
 
     /// A table of the motion, coupled coordinates included, rotations in degrees.
     ///
-    /// Coordinates that are neither rotations nor translations are written as they are, which is
-    /// what OpenSim expects of them.
+    /// Coordinates that are neither rotations nor translations are written without conversion, as
+    /// OpenSim expects.
     pub fn to_table(&self, model: &Model, name: &str) -> Table {
         let ids: Vec<CoordinateId> = model.coordinate_ids().collect();
         let mut values = Vec::with_capacity(self.frames.len() * model.stored_len());

@@ -1,4 +1,4 @@
-//! One moment of one model.
+//! The coordinates of one model at one time.
 
 use condyle_model::{CoordinateId, Model};
 
@@ -53,7 +53,7 @@ impl<'m> Posture<'m> {
         &self.stored
     }
 
-    /// The same, taken out.
+    /// The same, by value.
     #[must_use]
     pub fn into_stored(self) -> Vec<f64> {
         self.stored

@@ -1,8 +1,8 @@
-//! Marker recordings, whatever file they came from.
+//! Marker recordings, independent of file formats.
 
 use crate::LengthUnit;
 
-/// Where a marker was observed in one frame, in metres, or that it was not: 24 bytes.
+/// The observed position of a marker in one frame, in metres, or missing: 24 bytes.
 ///
 /// ```
 /// use condyle_motion::Observed;
@@ -19,7 +19,7 @@ impl Observed {
     /// The position; `None` where the marker was not seen.
     #[must_use]
     pub fn position(self) -> Option<[f64; 3]> {
-        // A missing marker is stored as NaN, so that the option costs no bytes.
+        // A missing marker is stored as NaN, so that the option takes no extra bytes.
         (!self.0[0].is_nan()).then_some(self.0)
     }
 
@@ -71,7 +71,7 @@ pub struct Recording {
     pub labels: Vec<String>,
     /// Frames per second.
     pub rate: f64,
-    /// Seconds, one per frame, never falling.
+    /// Seconds, one per frame, never decreasing.
     pub times: Vec<f64>,
     /// Row by row, one per frame and marker.
     pub positions: Vec<Observed>,
@@ -170,7 +170,7 @@ impl Recording {
             .fold(0.0, |most: f64, x| x.abs().max(most))
     }
 
-    /// Why the fields do not fit together, if they do not.
+    /// Why the fields are inconsistent, if they are.
     #[must_use]
     pub fn mismatch(&self) -> Option<String> {
         let (frames, labels) = (self.frames(), self.labels.len());

@@ -1,4 +1,4 @@
-//! Values between frames: at a time, at another rate, in a part of the time.
+//! Values between frames: at a time, at another rate, in an interval of time.
 
 use crate::Motion;
 use condyle_model::Model;
@@ -14,8 +14,8 @@ pub struct Between {
     pub share: f64,
 }
 
-/// The frames around a time; a frame whose time is within `tolerance` seconds stands for it alone.
-/// `None` outside of the times by more than that. `times` never fall.
+/// The frames around a time; a frame whose time is within `tolerance` seconds is used alone.
+/// `None` outside of the times by more than that. `times` must not decrease.
 ///
 /// ```
 /// use condyle_motion::between;
@@ -41,11 +41,11 @@ pub fn between(times: &[f64], time: f64, tolerance: f64) -> Option<Between> {
     Some(Between { before, after, share })
 }
 
-/// A frame this near to a time, in seconds, stands for it alone.
+/// A frame this close to a time, in seconds, is used without interpolation.
 const SAME_TIME: f64 = 1e-9;
 
 impl Motion {
-    /// The stored numbers of all coordinates at a time: straight between frames, along the shortest
+    /// The stored numbers of all coordinates at a time: linear between frames, along the shortest
     /// arc for orientations. `None` outside of the motion.
     #[must_use]
     pub fn at(&self, model: &Model, time: f64) -> Option<Vec<f64>> {

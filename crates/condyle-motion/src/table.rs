@@ -1,23 +1,23 @@
-//! Tables over time: motions, forces, errors, whatever file they came from.
+//! Tables over time: motions, forces, errors, independent of file formats.
 
 use crate::columns::coordinate_name;
 
-/// In what a table's rotational columns are.
+/// The unit of a table's rotational columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum AngleUnit {
-    /// The file says degrees, or has the old header that implies them.
+    /// The file states degrees, or has the old header that implies them.
     Degrees,
-    /// The file says radians.
+    /// The file states radians.
     Radians,
-    /// The file does not say.
+    /// The file does not state it.
     #[default]
     Unstated,
 }
 
 /// Columns of numbers over time.
 ///
-/// Nothing is converted: only a model knows which columns are rotations, so
-/// [`angle_unit`](Self::angle_unit) says what they are in and the caller converts them.
+/// Nothing is converted: only with a model is it known which columns are rotations, so
+/// [`angle_unit`](Self::angle_unit) gives their unit and the caller converts them.
 ///
 /// ```
 /// use condyle_motion::{AngleUnit, Table};
@@ -39,11 +39,11 @@ pub struct Table {
     pub name: String,
     /// Names of the columns, without that of time; no two are the same.
     pub columns: Vec<String>,
-    /// Seconds, one per row, never falling.
+    /// Seconds, one per row, never decreasing.
     pub times: Vec<f64>,
     /// Row by row, one per time and column, as in the file; NaN where a cell was blank.
     pub values: Vec<f64>,
-    /// In what the rotational columns are.
+    /// The unit of the rotational columns.
     pub angle_unit: AngleUnit,
     /// Other keys and values of the file's header, in order.
     pub header: Vec<(String, String)>,
@@ -78,8 +78,8 @@ impl Table {
 
     /// Index of a column, by its whole name or by that of the coordinate whose value it holds.
     ///
-    /// A whole name wins. A coordinate that two columns hold (one name in two joints) is found
-    /// only by its whole name.
+    /// A whole name takes precedence. A coordinate that two columns hold (one name in two joints)
+    /// is found only by its whole name.
     #[must_use]
     pub fn column(&self, name: &str) -> Option<usize> {
         if let Some(exact) = self.columns.iter().position(|c| c == name) {
@@ -96,13 +96,13 @@ impl Table {
         }
     }
 
-    /// The value of a header key, in any case.
+    /// The value of a header key, ignoring case.
     #[must_use]
     pub fn header_value(&self, key: &str) -> Option<&str> {
         self.header.iter().find(|(k, _)| k.eq_ignore_ascii_case(key)).map(|(_, v)| v.as_str())
     }
 
-    /// Why the fields do not fit together, if they do not.
+    /// Why the fields are inconsistent, if they are.
     #[must_use]
     pub fn mismatch(&self) -> Option<String> {
         let (rows, columns) = (self.rows(), self.columns.len());

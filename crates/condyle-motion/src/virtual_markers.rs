@@ -1,11 +1,11 @@
-//! What a recording of a motion would hold.
+//! The marker recording that a motion would give.
 
 use crate::{LengthUnit, Motion, Observed, Recording, Table};
 use condyle_model::{Mode, Model, Pose, Program, SizeMismatch};
 
 impl Motion {
-    /// The model's markers along the motion, in millimetres at the border of a file; a marker whose
-    /// place is not finite is missing.
+    /// The model's markers along the motion, written to files in millimetres; a marker whose
+    /// position is not finite is missing.
     ///
     /// # Errors
     /// [`SizeMismatch`] if a frame is not one of this model.
@@ -46,7 +46,7 @@ impl Recording {
     }
 }
 
-/// Frames per second of evenly spaced times, rounded to what such rates are given with.
+/// Frames per second of evenly spaced times, rounded to the usual precision of such rates.
 fn rate(times: &[f64]) -> f64 {
     match times {
         [first, .., last] if last > first => {

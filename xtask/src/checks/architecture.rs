@@ -1,6 +1,6 @@
-//! The map in `ARCHITECTURE.md`: every crate and every folder of sources is on it and nothing else
-//! is, each crate uses only crates above it, and the crates of the core keep their hands off files,
-//! threads and clocks, and off crates of others.
+//! The map in `ARCHITECTURE.md`: it lists exactly the crates and the folders of sources, each crate
+//! uses only crates above it, and the crates of the core use no files, threads or clocks, and no
+//! third-party crates.
 //!
 //! The map alone defines the core: the crates that stand above [`FIRST_BEYOND_CORE`] in its
 //! table. A map from which that cannot be told fails.
@@ -13,10 +13,10 @@ use crate::outcome::{Context, Outcome};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The first crate that is not of the core.
+/// The first crate that is not part of the core.
 const FIRST_BEYOND_CORE: &str = "condyle-formats";
 
-/// Crates of others that the core may use, except in tests.
+/// Third-party crates that the core may use; tests may use any.
 const FOREIGN_IN_CORE: [&str; 2] = ["nalgebra", "strsim"];
 
 pub(super) fn run(context: &Context) -> Outcome {
@@ -60,7 +60,7 @@ fn check(context: &Context, findings: &mut Vec<String>) -> Result<(), String> {
     map_of_folders(&crates, &map::folders(&map), findings)
 }
 
-/// The crates that are the core.
+/// The crates of the core.
 fn core<'m>(order: &'m [&'m str], findings: &mut Vec<String>) -> &'m [&'m str] {
     match order.iter().position(|name| *name == FIRST_BEYOND_CORE) {
         Some(0) => {
@@ -78,7 +78,7 @@ fn core<'m>(order: &'m [&'m str], findings: &mut Vec<String>) -> &'m [&'m str] {
     }
 }
 
-/// Holds a crate to the crates above it, and one of the core to these and few others.
+/// Checks that a crate uses only the crates above it, and one of the core few others besides.
 fn dependencies(
     package: &Package,
     is_core: bool,
@@ -88,7 +88,7 @@ fn dependencies(
     let name = &package.name;
     for used in &package.dependencies {
         let other = &used.name;
-        // By its name, too: one that is gone is of this project nevertheless.
+        // Also recognised by name: a crate that was removed is still one of this project.
         let is_ours =
             other.starts_with("condyle") || packages.iter().any(|package| package.name == *other);
         if is_ours && !above.contains(&other.as_str()) {

@@ -1,15 +1,15 @@
-//! Dependencies: what `deny.toml` allows, and known faults of them.
+//! Dependencies: what `deny.toml` allows, and known vulnerabilities.
 //!
-//! Faults are looked up in a database that is fetched. Where it cannot be, one that was fetched
-//! before is taken, and where there is none the check says so and goes on: a network that is down
-//! is no fault of this project.
+//! Vulnerabilities are looked up in a database that is downloaded. If that fails, one downloaded
+//! before is used; if there is none, the check reports that and continues: a network that is down
+//! is not an error of this project.
 
 use crate::outcome::{Context, Outcome};
 use crate::{cargo, tool};
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// How long fetching the database of known faults may take.
+/// How long downloading the database of vulnerabilities may take.
 const PATIENCE: Duration = Duration::from_secs(90);
 
 pub(super) fn run(context: &Context) -> Outcome {
@@ -31,7 +31,7 @@ fn is_installed(context: &Context) -> bool {
     tool::is_installed(cargo::command(context).arg("deny"))
 }
 
-/// Checks against the database of known faults, if one can be had.
+/// Checks against the database of vulnerabilities, if there is one.
 fn advisories(
     fetch: impl FnOnce() -> Result<(), String>,
     has_database: impl FnOnce() -> bool,
@@ -47,12 +47,12 @@ fn advisories(
     check()
 }
 
-/// Whether a database was fetched before: each is a folder where cargo-deny keeps them.
+/// Whether a database was downloaded before: each is a folder where cargo-deny keeps them.
 fn has_database() -> bool {
     let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
     let home = home.or_else(|| Some(std::env::home_dir()?.join(".cargo")));
     let Some(kept) = home.map(|home| home.join("advisory-dbs")) else { return false };
-    // A clone that was broken off has its `.git` but nothing checked out.
+    // An interrupted clone has its `.git` but nothing checked out.
     std::fs::read_dir(kept)
         .is_ok_and(|kept| kept.flatten().any(|entry| entry.path().join("crates").is_dir()))
 }
@@ -62,7 +62,7 @@ mod tests {
     use super::*;
     use crate::workspace::Workspace;
 
-    /// A crate beside the project's own rules, and these alone: nothing is fetched for a test.
+    /// Checks a crate against the project's own rules only: tests download nothing.
     fn rules(context: &Context) -> Outcome {
         cargo::run(context, &["deny", "--offline", "check", "bans", "licenses", "sources"]).into()
     }

@@ -1,8 +1,8 @@
-//! The fuzz targets: each file is one, each has seeds, all of them build and take their seeds.
+//! The fuzz targets: each file is one, each has seeds, all of them build and pass on their seeds.
 //!
-//! Finding new inputs wants a nightly compiler and hours. That a target builds and that it holds
-//! for what is kept in `fuzz/seeds/` takes neither: without instrumentation libFuzzer runs the files
-//! it is given.
+//! Finding new inputs requires a nightly compiler and hours. Building a target and running it on
+//! the files in `fuzz/seeds/` requires neither: without instrumentation libFuzzer runs the files
+//! that it is given.
 
 use crate::cargo::{self, Program};
 use crate::outcome::{Context, Outcome};
@@ -31,7 +31,7 @@ pub(super) fn run(context: &Context) -> Outcome {
     replay(context)
 }
 
-/// Compares files of targets, programs of the manifest and folders of seeds.
+/// Compares target files, programs of the manifest and folders of seeds.
 fn lists(context: &Context) -> Result<Vec<String>, String> {
     let packages = cargo::packages(context, MANIFEST)?;
     let programs: Vec<&Program> = packages.iter().flat_map(|package| &package.programs).collect();
@@ -65,7 +65,7 @@ fn lists(context: &Context) -> Result<Vec<String>, String> {
     Ok(findings)
 }
 
-/// Builds the targets and gives each its seeds.
+/// Builds the targets and runs each on its seeds.
 fn replay(context: &Context) -> Outcome {
     let programs = match cargo::build(context, &["--bins", "--manifest-path", MANIFEST]) {
         Ok(programs) if programs.is_empty() => vec![Err("cargo named no program".to_owned())],
@@ -94,7 +94,7 @@ fn seeds(context: &Context, target: &str) -> Result<Vec<PathBuf>, String> {
     Ok(files)
 }
 
-/// The names, without their endings, of what a folder has of some kind.
+/// The names, without extensions, of the entries of one kind in a folder.
 fn names(folder: &Path, kind: fn(&Path) -> bool) -> Result<BTreeSet<String>, String> {
     let entries = entries(folder)?.into_iter().filter(|path| kind(path));
     Ok(entries.filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned())).collect())
@@ -115,7 +115,7 @@ mod tests {
     use super::*;
     use crate::workspace::Workspace;
 
-    /// A target that does what libFuzzer's do with files, in two lines.
+    /// A target that handles files like those of libFuzzer, in two lines.
     const TARGET: &str = "fn main() {\n    for file in std::env::args().skip(1) {\n        \
                           assert!(!std::fs::read_to_string(file).unwrap().contains(\"bad\"));\n    \
                           }\n}\n";

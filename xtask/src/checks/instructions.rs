@@ -1,9 +1,9 @@
 //! Instructions of one call of each kernel, beside those of `benches/instructions.toml`.
 //!
-//! A clock on a shared machine cannot gate; a count can. Each kernel runs N and 2 N times under
-//! callgrind, and the difference divided by N is one call, without what comes before the first.
-//! The count depends on the compiler and a little on the processor, for which the mathematical
-//! library chooses its variants, so it is judged with a tolerance, and only with the same compiler.
+//! Times on a shared machine are too variable for a check; counts are not. Each kernel runs N and
+//! 2 N times under callgrind, and the difference divided by N is one call, without the startup. The
+//! count depends on the compiler and slightly on the processor, for which the mathematical library
+//! selects its variants, so it is compared with a tolerance, and only with the same compiler.
 
 use crate::outcome::{Context, Outcome};
 use crate::{cargo, tool};
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// By which fraction a count may grow before the check fails.
+/// The fraction by which a count may grow before the check fails.
 const TOLERANCE: f64 = 0.05;
 
 pub(super) fn run(context: &Context) -> Outcome {
@@ -52,7 +52,7 @@ fn compare(context: &Context) -> Result<Outcome, String> {
     Ok(if findings.is_empty() { Outcome::Passed } else { Outcome::Failed(findings.join("; ")) })
 }
 
-/// Prints every kernel beside its committed count; what is wrong.
+/// Prints every kernel beside its committed count; returns what is wrong.
 fn judge(committed: &Committed, counts: &BTreeMap<String, f64>) -> Vec<String> {
     let mut findings = vec![];
     println!("   {:<20} {:>10} {:>10} {:>8}", "kernel", "committed", "now", "change");
@@ -77,7 +77,7 @@ fn judge(committed: &Committed, counts: &BTreeMap<String, f64>) -> Vec<String> {
     findings
 }
 
-/// What the file says.
+/// The contents of the file.
 #[derive(Debug, Default, PartialEq)]
 struct Committed {
     compiler: String,
@@ -183,7 +183,7 @@ mod tests {
         );
     }
 
-    /// A program with one kernel that does what `work` says.
+    /// A program with one kernel that runs the code in `work`.
     fn kernels(workspace: Workspace, work: &str) -> Workspace {
         let text = format!(
             "fn main() {{\n    let words: Vec<String> = std::env::args().skip(1).collect();\n    \

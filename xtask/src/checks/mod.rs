@@ -14,11 +14,11 @@ use crate::outcome::{Context, Outcome};
 
 /// A check by name.
 pub(crate) struct Check {
-    /// What it is called on the command line.
+    /// Its name on the command line.
     pub(crate) name: &'static str,
-    /// What it makes sure of.
+    /// What it ensures.
     pub(crate) what: &'static str,
-    /// Looks.
+    /// Runs it.
     pub(crate) run: fn(&Context) -> Outcome,
 }
 

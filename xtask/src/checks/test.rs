@@ -1,4 +1,4 @@
-//! The test command, word for word as the README gives it.
+//! The test command, exactly as in the README.
 
 use crate::cargo;
 use crate::outcome::{Context, Outcome};

@@ -19,11 +19,12 @@ pub(crate) struct Bench {
     json: bool,
 }
 
-/// Postures that are cycled through, so that no branch is learned by heart.
+/// The number of different postures evaluated in turn, so that branch prediction cannot adapt to
+/// one.
 const POSTURES: usize = 64;
-/// Postures of one batch.
+/// The number of postures in one batch.
 const BATCH: usize = 1024;
-/// How often each figure is taken; the least counts.
+/// How often each figure is measured; the minimum is reported.
 const ROUNDS: usize = 15;
 
 impl Bench {
@@ -46,7 +47,7 @@ impl Bench {
                     black_box(program.evaluate_with_jacobian(posture, &mut pose, &mut jacobian));
             }
         });
-        // A batch keeps every pose: what an export or a data set does.
+        // A batch keeps every pose, as for an export or a data set.
         let mut poses = vec![Pose::new(&program); BATCH];
         let batched = nanoseconds(BATCH, || {
             for (pose, posture) in poses.iter_mut().zip(postures.iter().cycle()) {

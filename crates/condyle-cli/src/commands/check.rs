@@ -1,4 +1,4 @@
-//! `condyle check`: what is odd in a model, and where a motion breaks it.
+//! `condyle check`: inconsistencies of a model, and where a motion violates it.
 
 use super::Outcome;
 use crate::failure::Failure;
@@ -62,8 +62,8 @@ impl Check {
         Ok(outcome(broken))
     }
 
-    /// A file that was understood, but whose model contradicts itself, is a finding; any other
-    /// error is unusable input.
+    /// A file that could be read, but whose model contradicts itself, is a finding; any other error
+    /// is unusable input.
     fn contradictory(&self, error: OpenError) -> Result<Outcome, Failure> {
         let findings = match &error.cause {
             Cause::Content { error, text: None } if error.is_contradiction() => error.to_vec(),
@@ -101,7 +101,7 @@ fn head(name: &str, findings: &[Diagnostic]) -> String {
     format!("{name}: {}\n", counts.map(|severity| count(findings, severity)).join(", "))
 }
 
-/// Findings under the rule that made them, and advice that several share said once.
+/// Findings grouped by rule; a help that several findings share is printed once.
 fn grouped(text: &mut String, findings: &[Diagnostic]) {
     let mut rules: Vec<(Severity, &str)> = vec![];
     for finding in findings {
@@ -134,12 +134,12 @@ fn grouped(text: &mut String, findings: &[Diagnostic]) {
 /// How many findings of one kind are written out.
 const MOST_ALIKE: usize = 8;
 
-/// Where a help was first given, so that findings which share it stand together.
+/// The first finding with this help, so that findings which share it are grouped.
 fn own_order(findings: &[Diagnostic], help: &str) -> Option<usize> {
     findings.iter().position(|f| f.help == help)
 }
 
-/// The message behind its place in the file, where it has one.
+/// The message, after its place in the file if it has one.
 fn placed(finding: &Diagnostic) -> String {
     let place = finding.place.map_or(String::new(), |place| format!("{place}: "));
     format!("{place}{}", finding.message)
@@ -217,7 +217,7 @@ fn motion_json(model: &Model, motion: &MotionCheck) -> Value {
 fn motion_text(text: &mut String, name: &str, model: &Model, motion: &MotionCheck) {
     let _ = writeln!(text, "{name}: {} frames", motion.frames);
     if motion.findings.is_empty() {
-        text.push_str("  every frame holds\n");
+        text.push_str("  no findings in any frame\n");
     }
     for enforced in [true, false] {
         let own: Vec<_> = motion.outside.iter().filter(|o| o.enforced == enforced).collect();

@@ -36,7 +36,7 @@ pub(crate) struct Convert {
 const WRITTEN: [ContentKind; 4] =
     [ContentKind::Motion, ContentKind::Scene, ContentKind::Recording, ContentKind::Model];
 
-/// The combinations that exist, for the message about one that does not.
+/// The supported conversions, for the message about any other.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
                      to .glb (an animation) or .trc (the model's markers), and poses (.json) to all \
                      of these; a model (.osim, .toml, or a shipped one by name) to .toml or .glb; \
@@ -74,7 +74,7 @@ impl Convert {
             Content::Recording(_) => {
                 return Err(self.unknown(
                     target,
-                    "; `condyle track MODEL TRIAL -o OUT` makes motions of recordings",
+                    "; `condyle track MODEL TRIAL -o OUT` computes motions from recordings",
                 ));
             }
             _ => return Err(self.unknown(target, "")),
@@ -115,7 +115,7 @@ impl Convert {
         if self.limits == Limits::On { Mode::Posed } else { Mode::Open }
     }
 
-    /// A document as it was written; a shipped one such that it can be read anywhere.
+    /// A document as it was written; a shipped one so that it can be read without other files.
     fn document(&self, document: Document) -> Result<String, Failure> {
         match shipped::asked_for(&self.input) {
             Some(name) => Ok(shipped::standalone(name)?),
@@ -135,7 +135,9 @@ impl Convert {
             let Some(table) = table.filter(|_| target.writes.contains(&ContentKind::Motion)) else {
                 let from = if poses { "poses" } else { "a motion" };
                 let to = target.name;
-                return Err(Failure::new(format!("{what} {from} cannot become .{to} ({KNOWN})")));
+                return Err(Failure::new(format!(
+                    "{what} {from} cannot be converted to .{to} ({KNOWN})"
+                )));
             };
             if self.limits == Limits::On {
                 return Err(Failure::new(format!("{what} there are no limits to apply")));
@@ -180,13 +182,13 @@ impl Convert {
     }
 }
 
-/// A table in another format, number by number, with the unit of its angles said.
+/// A table in another format, number by number, with the unit of its angles stated.
 fn rewritten(path: &Path, mut table: Table, target: &Format) -> Result<Vec<u8>, Failure> {
     if table.angle_unit == AngleUnit::Unstated {
-        // A CSV without a word about it is in radians: that is how this program writes them.
+        // A CSV file without a stated unit is in radians: this program writes it like that.
         if open::ending(path) != "csv" {
             eprintln!(
-                "warning: {}: the header does not say whether angles are in degrees; taken as \
+                "warning: {}: the header does not state whether angles are in degrees; taken as \
                  radians (add the line inDegrees=yes if they are not)",
                 path.display()
             );

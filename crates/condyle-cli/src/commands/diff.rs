@@ -36,8 +36,8 @@ impl Diff {
             && (a.angle_unit == AngleUnit::Degrees) != (b.angle_unit == AngleUnit::Degrees)
         {
             eprintln!(
-                "warning: {} says {}, {} {}; without --model rotations cannot be told from lengths, so \
-                 the numbers are compared as they are",
+                "warning: {} has {}, {} has {}; without --model rotations cannot be distinguished \
+                 from lengths, so the numbers are compared without conversion",
                 self.a.display(),
                 unit_name(&a),
                 self.b.display(),

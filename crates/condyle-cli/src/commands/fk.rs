@@ -25,7 +25,7 @@ pub(crate) struct Fk {
     /// One JSON document on standard output (the default, and the only form).
     #[arg(long)]
     json: bool,
-    /// Where to write the answer; `-` is standard output.
+    /// Where to write the result; `-` is standard output.
     #[arg(short, long, default_value = "-")]
     output: PathBuf,
 }

@@ -1,4 +1,4 @@
-//! `condyle info`: what is in a file.
+//! `condyle info`: the contents of a file.
 
 mod model;
 mod recording;

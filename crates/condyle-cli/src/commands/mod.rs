@@ -29,7 +29,7 @@ enum Command {
     Check(check::Check),
     /// Pose a model: world transforms of all segments.
     Fk(fk::Fk),
-    /// Find the motion of a model that follows recorded markers.
+    /// Compute the motion of a model that follows recorded markers.
     Track(track::Track),
     /// Scale a model to the person of a static trial.
     Scale(scale::Scale),
@@ -53,13 +53,13 @@ pub(crate) enum Limits {
 /// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// All is well.
+    /// Success.
     Done,
-    /// The input was read but what was asked does not hold.
+    /// The input was read but a requested condition does not hold.
     DoesNotHold,
 }
 
-/// Carries a command out.
+/// Runs a command.
 pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
     match arguments.command {
         Command::Info(command) => command.run(),

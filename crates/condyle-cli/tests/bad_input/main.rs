@@ -226,7 +226,7 @@ fn recordings() {
             (
                 "comma.trc",
                 with("\n2\t0.01\t", "\n2\t0,01\t"),
-                "8:3: `0,01` is not a number (write 0.01: decimals are marked by a point)",
+                "8:3: `0,01` is not a number (write 0.01: the decimal separator is a point)",
             ),
             (
                 "time.trc",
@@ -263,7 +263,7 @@ fn recordings() {
             (
                 "frames.trc",
                 with("\t3\t6\t", "\t99\t6\t"),
-                "3: NumFrames says 99, 3 rows follow (the rows are right)",
+                "3: NumFrames is 99, but 3 rows follow (the rows are used)",
             ),
             (
                 "markers.trc",
@@ -368,17 +368,17 @@ fn motions() {
             (
                 "both.mot",
                 with("inDegrees=yes", "inDegrees=no\nAngles are in degrees"),
-                "3: `inDegrees` says radians, the text says degrees (taken as radians)",
+                "3: `inDegrees` means radians, the text states degrees (taken as radians)",
             ),
             (
                 "columns.mot",
                 with("version=1", "version=1\nnColumns=2"),
-                "6: the header says 2 columns, 3 are named (the names are right)",
+                "6: the header states 2 columns, but 3 are named (the names are used)",
             ),
             (
                 "rows.mot",
                 with("version=1", "version=1\nnRows=9"),
-                "6: the header says 9 rows, 3 follow (the rows are right)",
+                "6: the header states 9 rows, but 3 follow (the rows are used)",
             ),
         ],
     );
@@ -426,7 +426,8 @@ fn setups() {
             (
                 "nan.xml",
                 tasks(&task("A", "NaN")),
-                "4:1: the weight NaN of <IKMarkerTask name=\"A\"> (a weight is 0 or more)",
+                "4:1: the weight NaN of <IKMarkerTask name=\"A\"> is not valid (a weight is 0 or \
+                 more)",
             ),
             (
                 "word.xml",
@@ -447,7 +448,7 @@ fn setups() {
             (
                 "twice.xml",
                 tasks(&(task("A", "1") + &task("A", "2"))),
-                "4:34: <IKMarkerTask name=\"A\"> repeats (the first of them rules)",
+                "4:34: <IKMarkerTask name=\"A\"> repeats (the first of them is used)",
             ),
             (
                 "typo.xml",
@@ -483,14 +484,14 @@ fn more_bodies_than_anybody_has() {
             (
                 "many.osim",
                 model(&bodies),
-                "10003:1: <Body name=\"b10000\"> is one too many (a model may have 10000 of its \
-                 kind; is the file damaged?)",
+                "10003:1: <Body name=\"b10000\"> exceeds the number allowed (a model may have \
+                 10000 of its kind; is the file damaged?)",
             ),
             (
                 "chain.osim",
                 model(&chain),
-                "1:1: the coordinates move segments in 8022000 ways (at most 4000000 are computed; \
-                 use fewer bodies)",
+                "1:1: the model has 8022000 pairs of a segment and a direction of motion (at \
+                 most 4000000 are allowed; use fewer bodies)",
             ),
         ],
     );

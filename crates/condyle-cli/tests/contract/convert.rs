@@ -63,7 +63,7 @@ fn without_a_model_numbers_stay_and_the_unit_is_said() {
     assert!(text.contains("inDegrees=yes\n") && text.ends_with("time\tknee\n0\t30.5\n"), "{text}");
     folder.write("u.mot", "u\nendheader\ntime\tknee\n0\t0.5\n");
     let run = folder.condyle(&["convert", "u.mot", "-", "--to", "mot"]);
-    assert!(run.err.starts_with("warning: u.mot: the header does not say"), "{}", run.err);
+    assert!(run.err.starts_with("warning: u.mot: the header does not state"), "{}", run.err);
     assert!(run.expect(0).contains("inDegrees=no\n"));
     folder.write("r.csv", "time,knee\n0,0.5\n");
     let run = folder.condyle(&["convert", "r.csv", "-", "--to", "mot"]);
@@ -151,10 +151,10 @@ fn what_cannot_be_converted_is_told_what_can() {
     };
     let known = "known are: a motion (.mot, .sto, .csv) to .mot";
     refused(&["leg.osim", "leg.mot"], known);
-    refused(&["m.mot", "m.glb"], "without --model a motion cannot become .glb");
+    refused(&["m.mot", "m.glb"], "without --model a motion cannot be converted to .glb");
     refused(&["m.mot", "m.xyz"], "the ending names no format that can be written");
     let said = refused(&["a.trc", "a.mot", "--model", "leg.osim"], known);
-    assert!(said.contains("`condyle track MODEL TRIAL -o OUT` makes motions of recordings"));
+    assert!(said.contains("`condyle track MODEL TRIAL -o OUT` computes motions from recordings"));
     refused(&["m.mot", "-"], "name the format with --to");
     refused(&["readme.txt", "a.mot"], known);
     let bare = leg::osim().replace("MarkerSet>", "RemarkSet>");

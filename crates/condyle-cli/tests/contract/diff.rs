@@ -31,7 +31,7 @@ fn one_motion_in_two_units_is_one_motion() {
     // Without the model nobody knows which columns are angles.
     let run = folder.condyle(&["diff", "a.mot", "b.csv", "--json"]);
     assert!(
-        run.err.contains("a.mot says degrees, b.csv no unit, which means radians"),
+        run.err.contains("a.mot has degrees, b.csv has no unit, which means radians"),
         "{}",
         run.err
     );

@@ -243,7 +243,7 @@ fn poses_are_baked_with_what_stretches() {
     let text = text.expect(0);
     assert!(text.lines().last().is_some_and(|row| row.starts_with("2,")), "{text}");
     let said = folder.condyle(&["convert", "p.json", "q.glb"]).refused();
-    assert!(said.contains("p.json: without --model poses cannot become .glb"), "{said}");
+    assert!(said.contains("p.json: without --model poses cannot be converted to .glb"), "{said}");
     folder.write("q.json", r#"[{}, {"arm_1_r/crul": 1}]"#);
     let said = folder.condyle(&["convert", "q.json", "q.glb", "--model", "octopus"]).refused();
     assert!(said.contains("q.json: pose 1: ") && said.contains("arm_1_r/curl"), "{said}");

@@ -1,10 +1,11 @@
-//! GLB, binary glTF 2.0: an animated figure in one file that every viewer opens.
+//! GLB, binary glTF 2.0: an animated figure in one file.
 //!
-//! A [`Scene`] is a tree of named nodes with simple shapes, a time line, and for each moving node
-//! its place in its parent at every time. Lengths are metres; glTF is Y up, so a figure that is Z
-//! up hangs under one turned root. A node is moved, turned and sized along its own axes, and what
-//! it carries with it; no more can be said of it. Channels that never change are left out. Times start at 0, as
-//! glTF has none before; times that are no later than the one before are dropped.
+//! A [`Scene`] is a tree of named nodes with simple shapes, a list of times, and for each moving
+//! node its transform in its parent at every time. Lengths are metres; glTF is Y up, so a figure
+//! that is Z up is below a rotated root node. A node is translated, rotated, and scaled along its
+//! own axes, together with its children; glTF nodes represent no other transforms. Channels that
+//! never change are omitted. Times start at 0, as glTF has no negative times; times that are not
+//! later than the one before are dropped.
 
 mod pack;
 mod place;

@@ -1,4 +1,4 @@
-//! Numbers into the binary chunk, and the accessors that find them there.
+//! Packs numbers into the binary chunk, with the accessors that refer to them.
 
 use gltf_json::accessor::{Accessor, ComponentType, GenericComponentType, Type};
 use gltf_json::buffer::{Target, View};
@@ -42,7 +42,7 @@ impl Pack {
     /// Indices of corners, in 16 bits where they fit.
     pub(super) fn indices(&mut self, root: &mut Root, data: &[u32]) -> Index<Accessor> {
         let start = self.bytes.len();
-        // 65535 itself is reserved to restart a strip.
+        // 65535 itself is reserved for restarting a strip.
         let short = data.iter().all(|i| *i < u32::from(u16::MAX));
         for index in data {
             if short {
@@ -98,7 +98,7 @@ impl Pack {
     /// would be larger than the format's 4 GiB.
     pub(super) fn file(self, mut json: Vec<u8>) -> Option<Vec<u8>> {
         json.resize(json.len().next_multiple_of(4), b' ');
-        // A chunk without bytes is left out.
+        // A chunk without bytes is omitted.
         let binary = if self.bytes.is_empty() { 0 } else { 8 + self.bytes.len() };
         let total = 12 + 8 + json.len() + binary;
         let size = |n: usize| u32::try_from(n).ok().map(u32::to_le_bytes);

@@ -1,7 +1,7 @@
-//! The nearest that a node can come to an affine transform.
+//! The transform of a node that is nearest to an affine transform.
 //!
-//! A node of glTF is placed by a translation, a rotation R and a size along each of its own axes
-//! S, as T·R·S. Of a linear map L the polar decomposition L = Q·P gives the rotation Q that is
+//! A node of glTF is placed by a translation T, a rotation R and a scale S along each of its own
+//! axes, as T·R·S. Of a linear map L the polar decomposition L = Q·P gives the rotation Q that is
 //! nearest to it and a symmetric stretch P (Higham 1986, *Computing the polar decomposition*). R is
 //! Q and S the diagonal of P, which is exact where L stretches along the node's axes alone. What
 //! is off the diagonal is a shear, which a node cannot hold.
@@ -9,17 +9,17 @@
 use super::scene::LocalPose;
 use condyle_math::{Affine, Mat3, Quat, Vec3};
 
-/// How often the rotation is improved at most; about ten times do.
+/// The maximum number of iterations for the rotation; about ten suffice.
 const ROUNDS: usize = 40;
 
 impl LocalPose {
-    /// The place nearest to an affine transform, and the shear that it leaves out.
+    /// The node transform nearest to an affine transform, and the shear that it omits.
     ///
-    /// The shear is |L - R·S| in the Frobenius norm, without unit: a point of the node is off by at
-    /// most that times its distance from the node's origin. It is 0 to rounding where the transform
-    /// is a rotation and sizes along the node's own axes. A transform that turns its space inside
-    /// out has three negative sizes. For one that flattens it the rotation is not determined and is
-    /// left away; sizes and shear are still true.
+    /// The shear is |L - R·S| in the Frobenius norm, without unit: the error of a point of the node
+    /// is at most that times its distance from the node's origin. It is 0 up to rounding if the
+    /// transform is a rotation and scales along the node's axes. A reflection has three negative
+    /// scales. For a singular transform the rotation is undetermined and omitted; scales and shear
+    /// remain correct.
     ///
     /// ```
     /// use condyle_formats::glb::LocalPose;
@@ -51,7 +51,7 @@ impl LocalPose {
 }
 
 /// The rotation of a linear map by Newton's iteration X ← (g·X + (g·X)⁻ᵀ)/2 with Higham's factor g;
-/// of a map that reverses space that of its negative, of a singular one the identity.
+/// for a reflection that of its negative, for a singular map the identity.
 fn rotation_of(linear: Mat3) -> Mat3 {
     let mut x = linear;
     for _ in 0..ROUNDS {
@@ -104,7 +104,7 @@ mod tests {
                 assert!((found - expected).abs() < 1e-14 * largest, "{:?}", place.scale);
             }
             let q = Quat::from(place.rotation);
-            // The direction of the thinnest axis is known to rounding of the longest.
+            // The direction of the thinnest axis is known up to the rounding error of the longest.
             let thinnest = x.min(y).min(z);
             assert!(q.angle_to(Quat::from_mat3(turn)) < 1e-14 * largest / thinnest + 1e-7);
             assert!(shear < 1e-14 * largest);

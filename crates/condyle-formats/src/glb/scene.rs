@@ -1,4 +1,4 @@
-//! What a scene is made of.
+//! The parts of a scene.
 
 use super::shape::Shape;
 
@@ -12,7 +12,7 @@ pub enum UpAxis {
     Z,
 }
 
-/// Where a node is in its parent: sized first, then turned, then moved.
+/// The transform of a node in its parent: scaled first, then rotated, then translated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LocalPose {
     /// Metres.
@@ -48,7 +48,7 @@ pub struct SceneNode {
     pub shapes: Vec<Shape>,
 }
 
-/// The way of one node.
+/// The motion of one node.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Track {
     /// Index of the node; no node has two tracks.
@@ -57,13 +57,13 @@ pub struct Track {
     pub poses: Vec<LocalPose>,
 }
 
-/// The way of a recorded marker, drawn as a small ball.
+/// The path of a recorded marker, drawn as a small ball.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MarkerTrack {
     /// Shown in viewers.
     pub name: String,
     /// Metres in the figure's world, one for each of the scene's times; where it was not seen,
-    /// the ball stays where it was last.
+    /// the ball stays at its last position.
     pub positions: Vec<Option<[f64; 3]>>,
 }
 

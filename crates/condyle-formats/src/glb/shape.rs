@@ -31,14 +31,14 @@ pub enum Shape {
 /// How a shape looks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub enum Finish {
-    /// Ivory; bones are.
+    /// Ivory, for bones.
     #[default]
     Bone,
     /// Grey-blue, for joints and ends.
     Joint,
-    /// Orange, for what stands out.
+    /// Orange, for highlights.
     Accent,
-    /// Green; recorded markers are.
+    /// Green, for recorded markers.
     Marker,
 }
 
@@ -70,8 +70,8 @@ impl Shape {
         }
     }
 
-    /// Whether every number is finite and every size positive. A bone of no length is well
-    /// formed, and drawn as nothing.
+    /// Whether every number is finite and every size positive. A bone of length 0 is well formed,
+    /// and not drawn.
     pub(super) fn is_well_formed(&self) -> bool {
         let finite = |v: &[f64; 3]| v.iter().all(|x| x.is_finite() && x.abs() < 1e6);
         let positive = |x: f64| (1e-6..1e6).contains(&x);
@@ -93,7 +93,7 @@ impl Shape {
 }
 
 impl Triangles {
-    /// A triangle with one normal, that of its plane; nothing if it has no area.
+    /// Adds a triangle with the normal of its plane at every corner; nothing if it has no area.
     fn flat(&mut self, corners: [[f64; 3]; 3]) {
         let [a, b, c] = corners;
         let normal = unit(cross(sub(b, a), sub(c, a)));
@@ -123,14 +123,14 @@ fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
     (length > 1e-12).then(|| v.map(|x| x / length))
 }
 
-/// A waist at 15 % of the length, as wide as a tenth of it, 4 to 30 mm.
+/// Adds an octahedron, widest at 15 % of its length; its width is a tenth of it, 4 to 30 mm.
 fn bone(to: [f64; 3], triangles: &mut Triangles) {
     let length = to.iter().map(|x| x * x).sum::<f64>().sqrt();
     if length < 1e-4 {
         return;
     }
     let Some(axis) = unit(to) else { return };
-    // Any direction that is not along the bone: the axis that it is least along.
+    // Any direction that is not along the bone: the axis least aligned with it.
     let least = (0..3).min_by(|i, j| axis[*i].abs().total_cmp(&axis[*j].abs())).unwrap_or(0);
     let mut other = [0.0; 3];
     other[least] = 1.0;

@@ -83,7 +83,7 @@ pub fn write(scene: &Scene) -> Result<Vec<u8>, Error> {
     writer.finish()
 }
 
-/// Says what is wrong with a scene before anything is built.
+/// Validates a scene before anything is built.
 fn check(scene: &Scene) -> Result<(), Error> {
     for (index, node) in scene.nodes.iter().enumerate() {
         if let Some(parent) = node.parent
@@ -144,7 +144,7 @@ fn check_length(found: usize, scene: &Scene, name: &str) -> Result<(), Error> {
 }
 
 fn check_pose(pose: &LocalPose, name: &str, when: &str) -> Result<(), Error> {
-    // f32 holds no more than 3.4e38; nothing posed is a million kilometres away.
+    // f32 holds no more than 3.4e38; positions beyond a million kilometres are errors.
     let held = |numbers: &[f64; 3]| numbers.iter().all(|x| x.abs() < 1e9);
     if held(&pose.translation) && held(&pose.scale) && unit(pose.rotation).is_some() {
         return Ok(());
@@ -159,7 +159,7 @@ fn unit(q: [f64; 4]) -> Option<[f32; 4]> {
     (length.is_finite() && length > 1e-6).then(|| q.map(|x| (x / length) as f32))
 }
 
-/// Rotations as unit quaternions whose signs never jump, so that LINEAR takes the short way.
+/// Rotations as unit quaternions whose signs never jump, so that LINEAR takes the shortest arc.
 fn continuous(poses: impl Iterator<Item = [f64; 4]>) -> Vec<[f32; 4]> {
     let mut rotations: Vec<[f32; 4]> = Vec::new();
     for rotation in poses {

@@ -18,8 +18,8 @@ pub enum Holding {
     Tasks(setup::IkTaskSet),
 }
 
-/// Reads a file of OpenSim by what its elements say it is: a model, a setup of inverse kinematics, or
-/// the tasks of one.
+/// Reads a file of OpenSim, whose kind is determined by its elements: a model, a setup of inverse
+/// kinematics, or the tasks of one.
 ///
 /// # Errors
 /// What is wrong, with its place; `osim/unknown` if it is none of these.

@@ -1,7 +1,7 @@
 //! Setup files of OpenSim's inverse kinematics tool.
 //!
-//! What a setup names it names from its own place: paths are given as written, and `Unassigned`
-//! or blank means none. The task set may stand inside or in a file of its own; then
+//! Paths in a setup are relative to its own folder; they are returned as written, and `Unassigned`
+//! or blank means none. The task set may be inside the setup or in a file of its own; then
 //! [`IkTasks::File`] names it and [`read_tasks`] reads it.
 
 use crate::xml::{Element, XmlDocument};
@@ -18,14 +18,14 @@ pub struct IkSetup {
     pub marker_file: Option<String>,
     /// The motion that tasks with [`CoordinateTarget::FromFile`] follow, as written.
     pub coordinate_file: Option<String>,
-    /// Where the answer goes, as written.
+    /// The file for the result, as written.
     pub output_motion_file: Option<String>,
     /// First and last time to solve, in seconds, either of which may be infinite; `None` for all of
     /// the recording.
     pub time_range: Option<[f64; 2]>,
-    /// The weight of constraint errors; infinite, the default, if they must not be.
+    /// The weight of constraint errors; infinite, the default, if constraints must hold exactly.
     pub constraint_weight: f64,
-    /// The accuracy asked for; 1e-5 by default.
+    /// The requested accuracy; 1e-5 by default.
     pub accuracy: f64,
     /// What to follow, and how strongly.
     pub tasks: IkTasks,
@@ -49,7 +49,7 @@ pub struct IkTaskSet {
     pub coordinates: Vec<CoordinateTask>,
 }
 
-/// Bring a model's marker to where it was recorded.
+/// Bring a model's marker to its recorded position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MarkerTask {
     /// The marker's name in model and recording.
@@ -149,7 +149,7 @@ pub fn tasks_from_bytes(bytes: &[u8]) -> Result<Read<IkTaskSet>, Error> {
 
 const TOOL: &str = "InverseKinematicsTool";
 
-/// What a tool may hold; what is not used is here so that a mistyped name can be told.
+/// The properties of a tool; unused ones are listed so that a mistyped name can be recognised.
 const PROPERTIES: [&str; 12] = [
     "IKTaskSet",
     "accuracy",
@@ -214,7 +214,7 @@ pub(super) fn tool_of(root: Element<'_>) -> Option<Element<'_>> {
     candidates().find(|e| e.is(TOOL)).or_else(misspelt)
 }
 
-/// The tool itself, bare or in its document; OpenSim's own files have it misspelt.
+/// The tool itself, bare or in its document; in OpenSim's own files its name is misspelt.
 fn tool<'d>(root: Element<'d>, warnings: &mut Warnings) -> Result<Element<'d>, Error> {
     if let Some(tool) = tool_of(root) {
         if !tool.is(TOOL) {
@@ -232,12 +232,12 @@ fn tool<'d>(root: Element<'d>, warnings: &mut Warnings) -> Result<Element<'d>, E
         .with_help("this is not a setup of inverse kinematics"))
 }
 
-/// How many letters differ; names of elements are short.
+/// The edit distance of two names; names of elements are short.
 fn distance(a: &str, b: &str) -> usize {
     if a.len() > 64 { usize::MAX } else { strsim::levenshtein(a, b) }
 }
 
-/// A path, unless it is blank or says that there is none.
+/// A path, unless it is blank or `Unassigned`.
 fn assigned(path: &str) -> Option<String> {
     let path = path.trim();
     (!path.is_empty() && !path.eq_ignore_ascii_case("unassigned")).then(|| path.to_owned())
@@ -271,7 +271,10 @@ fn weight(element: Element<'_>, name: &str) -> Result<Option<f64>, Error> {
     match child.f64()? {
         weight if weight >= 0.0 => Ok(Some(weight)),
         weight => Err(child
-            .error("setup/weight", format!("the weight {weight} of {}", element.describe()))
+            .error(
+                "setup/weight",
+                format!("the weight {weight} of {} is not valid", element.describe()),
+            )
             .with_help("a weight is 0 or more")),
     }
 }
@@ -300,7 +303,7 @@ pub(super) fn tasks_from_document(document: Read<XmlDocument>) -> Result<Read<Ik
     Ok(Read { value: tasks, warnings: warnings.finish() })
 }
 
-/// The tasks of a set, of two with one name the first.
+/// The tasks of a set; of two with the same name the first.
 fn task_set(set: Element<'_>, warnings: &mut Warnings) -> Result<IkTaskSet, Error> {
     let mut tasks = IkTaskSet::default();
     let mut seen = std::collections::HashSet::new();
@@ -310,7 +313,7 @@ fn task_set(set: Element<'_>, warnings: &mut Warnings) -> Result<IkTaskSet, Erro
                 warnings.add("setup/unknown-task", || {
                     Diagnostic::warning(
                         "setup/unknown-task",
-                        format!("<{}> is no task", task.name()),
+                        format!("<{}> is not a task", task.name()),
                     )
                     .at(task.place())
                     .with_help("it was skipped; tasks are IKMarkerTask and IKCoordinateTask")
@@ -338,7 +341,7 @@ fn task_set(set: Element<'_>, warnings: &mut Warnings) -> Result<IkTaskSet, Erro
             warnings.add("setup/duplicate-task", || {
                 Diagnostic::warning("setup/duplicate-task", format!("{} repeats", task.describe()))
                     .at(task.place())
-                    .with_help("the first of them rules")
+                    .with_help("the first of them is used")
             });
         } else if task.is("IKMarkerTask") {
             tasks.markers.push(MarkerTask { name, apply, weight });

@@ -7,7 +7,7 @@ use condyle_motion::AngleUnit;
 /// Keys that SIMM wrote with a space instead of `=`.
 const SIMM_KEYS: [&str; 4] = ["datacolumns", "datarows", "otherdata", "range"];
 
-/// What the header says.
+/// The contents of the header.
 #[derive(Debug, Default)]
 pub(super) struct Header {
     pub(super) name: String,
@@ -111,7 +111,7 @@ fn truth(value: &str) -> Option<AngleUnit> {
     }
 }
 
-/// The unit that the key, the text and the kind of header agree on, or the key's.
+/// The unit that the key, the text and the kind of header imply; the key takes precedence.
 fn settle(
     key: Option<(AngleUnit, Place)>,
     text: Option<AngleUnit>,
@@ -124,7 +124,7 @@ fn settle(
             warnings.push(
                 Diagnostic::warning(
                     "sto/unit-contradiction",
-                    format!("`inDegrees` says {}, the text says {}", name(key), name(text)),
+                    format!("`inDegrees` means {}, the text states {}", name(key), name(text)),
                 )
                 .at(place)
                 .with_help(format!("taken as {}", name(key))),

@@ -7,9 +7,9 @@
 //! ```
 //!
 //! Cells are separated by tabs; where the line of names has none, by commas or by spaces.
-//! What is made of the dialects:
+//! How dialects are read:
 //!
-//! - `inDegrees=yes|no`, in any case, says what rotations are in. A header with the keys of SIMM
+//! - `inDegrees=yes|no`, in any case, gives the unit of rotations. A header with the keys of SIMM
 //!   (`datacolumns`, `datarows`, `otherdata`, `range`) and without `inDegrees` means degrees, as
 //!   does the sentence `Angles are in degrees`. Otherwise the unit is
 //!   [`Unstated`](crate::AngleUnit::Unstated). Where the two
@@ -17,8 +17,8 @@
 //! - Cells of several numbers (`DataType=Vec3`, `Quaternion`) become columns `name_1`, `name_2`,
 //!   ... in the order of the file (OpenSim's quaternions are w, x, y, z), with a warning.
 //! - Blank cells and rows that end early are NaN; a row with too many cells is an error.
-//! - Counts in the header that do not fit are a warning: rows and names rule.
-//! - Times that repeat are a warning, times that go back an error; two columns of one name are an
+//! - Wrong counts in the header are a warning: the actual rows and names are used.
+//! - Repeated times are a warning, decreasing times an error; two columns with the same name are an
 //!   error.
 
 mod header;

@@ -85,12 +85,12 @@ pub fn read(text: &str) -> Result<Read<Table>, Error> {
             Diagnostic::warning(
                 "sto/column-count",
                 format!(
-                    "the header says {declared} columns, {} are named",
+                    "the header states {declared} columns, but {} are named",
                     names.len() + usize::from(timed)
                 ),
             )
             .at(names_line.place())
-            .with_help("the names are right"),
+            .with_help("the names are used"),
         );
     }
     let names = distinct(&names, names_line, &mut warnings)?;
@@ -116,10 +116,10 @@ pub fn read(text: &str) -> Result<Read<Table>, Error> {
         warnings.push(
             Diagnostic::warning(
                 "sto/row-count",
-                format!("the header says {declared} rows, {} follow", times.len()),
+                format!("the header states {declared} rows, but {} follow", times.len()),
             )
             .at(names_line.place())
-            .with_help("the rows are right"),
+            .with_help("the rows are used"),
         );
     }
     if let (false, Some([start, end])) = (timed, header.range) {
@@ -146,7 +146,7 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Read<Table>, Error> {
     read_decoded(bytes, read)
 }
 
-/// The names, if no two are the same; a column without one is called after its number.
+/// The names, if no two are the same; a column without one is named by its number.
 fn distinct(names: &[&str], line: Line<'_>, warnings: &mut Warnings) -> Result<Vec<String>, Error> {
     let mut columns: HashMap<String, usize> = HashMap::with_capacity(names.len());
     let mut distinct = Vec::with_capacity(names.len());
@@ -296,7 +296,7 @@ fn not_a_number(line: Line<'_>, cell: &str, column: &str) -> Error {
         .with_help("expected a number; a missing value is a blank cell or `nan`")
 }
 
-/// Even times for a SIMM file without a column of them.
+/// Evenly spaced times for a SIMM file without a time column.
 fn spread(times: &mut [f64], start: f64, end: f64, warnings: &mut Warnings) {
     let last = times.len().saturating_sub(1).max(1) as f64;
     for (row, time) in times.iter_mut().enumerate() {
@@ -308,7 +308,7 @@ fn spread(times: &mut [f64], start: f64, end: f64, warnings: &mut Warnings) {
     );
 }
 
-/// The names of the columns after cells of several numbers were taken apart.
+/// The names of the columns after cells of several numbers were split.
 fn widen(
     names: &[String],
     widths: &[usize],

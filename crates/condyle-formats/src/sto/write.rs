@@ -22,7 +22,7 @@ const OWN_KEYS: [&str; 11] = [
 /// Writes a table as `.mot` or `.sto`, which share one grammar.
 ///
 /// Numbers have the shortest decimals that read back as the same; NaN is `nan`. An unstated angle
-/// unit leaves out `inDegrees`; OpenSim then takes the rotations as radians.
+/// unit omits `inDegrees`; OpenSim then takes the rotations as radians.
 ///
 /// # Errors
 ///
@@ -87,7 +87,7 @@ pub fn write(table: &Table) -> Result<String, Error> {
     Ok(text)
 }
 
-/// The title as a line that no reader takes for a key; OpenSim needs one.
+/// The title as a line that no reader mistakes for a key; OpenSim needs one.
 fn title(name: &str) -> String {
     let title = plain(name).replace('=', "_");
     let first = title.split_whitespace().next().unwrap_or_default().to_ascii_lowercase();

@@ -22,8 +22,8 @@ pub const MAX_TEXT_BYTES: usize = 512 << 20;
 
 /// The text in some bytes, without its byte order mark.
 ///
-/// UTF-8 is taken as it is, UTF-16 where a byte order mark announces it. Anything else is read as
-/// Latin-1, in which every byte is a letter, with the warning `text/encoding`.
+/// UTF-8 is used unchanged; UTF-16 is recognised by its byte order mark. Anything else is read as
+/// Latin-1, in which every byte is a character, with the warning `text/encoding`.
 ///
 /// # Errors
 ///
@@ -58,7 +58,7 @@ pub fn decode(bytes: &[u8]) -> Result<Read<Cow<'_, str>>, Error> {
     }
 }
 
-/// Refuses a text that no reader should hold in memory several times over.
+/// Rejects a text that is too large to be held in memory several times.
 pub(crate) fn check_size(bytes: usize) -> Result<(), Error> {
     if bytes <= MAX_TEXT_BYTES {
         return Ok(());
@@ -81,7 +81,7 @@ fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Read<Cow<'_, str>> {
     let mut read = Read::clean(Cow::Owned(text));
     if broken {
         read.warnings.push(
-            Diagnostic::note("text/encoding", "the UTF-16 text has broken characters")
+            Diagnostic::note("text/encoding", "the UTF-16 text has invalid characters")
                 .with_help("they were replaced by `\u{fffd}`"),
         );
     }

@@ -60,7 +60,7 @@ pub(crate) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> + Clone {
     })
 }
 
-/// The place of the last line that holds anything: where a file ends that should go on.
+/// The place of the last line that is not blank: where an incomplete file ends.
 pub(crate) fn last_line(text: &str) -> Place {
     let end = text.trim_end().len();
     Place::at_line(lines(&text[..end]).last().map_or(1, |line| line.number))

@@ -1,4 +1,4 @@
-//! From bytes to lines, cells and numbers, for every format made of text.
+//! From bytes to lines, cells and numbers, for every text format.
 
 mod decode;
 mod line;

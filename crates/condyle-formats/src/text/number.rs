@@ -1,9 +1,9 @@
-//! Numbers as programs of five decades have written them.
+//! Numbers in the spellings of old and new programs.
 
 /// A number with any of the spellings of infinity and not-a-number met in files.
 ///
 /// Besides what Rust reads: `1.#INF`, `-1.#IND`, `1.#QNAN`, `1.#SNAN`, `-nan(ind)`, in any case.
-/// Space around it does not matter. None if it is no number.
+/// Space around it is ignored. None if it is not a number.
 ///
 /// ```
 /// use condyle_formats::text::number;

@@ -26,7 +26,7 @@ impl Delimiter {
     }
 }
 
-/// What the lines before the rows say.
+/// The contents of the lines before the rows.
 #[derive(Debug)]
 pub(super) struct Header {
     pub(super) labels: Vec<String>,
@@ -72,7 +72,7 @@ pub(super) fn read<'a>(
     Ok(Header { labels, rate, frames: number_of("NumFrames"), unit, values: values_line.place() })
 }
 
-/// Finds the line of keys, which is the second of a good file.
+/// Finds the line of keys, which is the second of a valid file.
 fn find_keys<'a>(
     lines: &mut impl Iterator<Item = Line<'a>>,
     warnings: &mut Warnings,
@@ -171,7 +171,7 @@ fn labels<'a>(
     while lines.peek().is_some_and(Line::is_blank) {
         lines.next();
     }
-    // The axis line has no number in it; where it is left out the rows follow at once.
+    // The axis line has no number in it; where it is missing the rows follow immediately.
     let axes = lines.next_if(|line| {
         let mut filled = line.text.split_whitespace().peekable();
         filled.peek().is_some()
@@ -199,7 +199,7 @@ fn labels<'a>(
                 format!("NumMarkers is {declared}, but {} names are given", named.len()),
             )
             .at(label_line.place())
-            .with_help("the names are right"),
+            .with_help("the names are used"),
         );
     }
     Ok(distinct(&named, label_line, warnings))

@@ -1,6 +1,6 @@
 //! TRC, the marker recordings of Motion Analysis.
 //!
-//! The grammar, as the files in the wild have it:
+//! The grammar, as found in existing files:
 //!
 //! ```text
 //! file      = [ "PathFileType" ... ] line
@@ -12,8 +12,7 @@
 //! row       = frame time { x y z }          blank or NaN: the marker was not seen
 //! ```
 //!
-//! Cells are separated by tabs; in a line without any tab by spaces. Dialects and what is made
-//! of them:
+//! Cells are separated by tabs; in a line without any tab by spaces. How dialects are read:
 //!
 //! - Labels are taken **by order**, never by tab position: OpenSim once wrote one tab too many
 //!   (`Time\t\tSternum`). Axis names are not looked at, so they may start at X5.
@@ -26,7 +25,7 @@
 //!   many is an error.
 //! - Of two markers with one name the second becomes `name#2`, with a warning.
 //! - An unknown or blank unit is guessed from the size of the data, with a warning.
-//! - Times that repeat are a warning, times that go back an error.
+//! - Repeated times are a warning, decreasing times an error.
 
 mod header;
 mod read;

@@ -5,7 +5,7 @@ use crate::text::{Line, check_size, last_line, lines, number, read_decoded};
 use condyle_diagnostics::{Diagnostic, Error, Place, Read, Warnings};
 use condyle_motion::{LengthUnit, Observed, Recording};
 
-/// Choices that a TRC file itself cannot make.
+/// Options that a TRC file itself cannot state.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Dialect {
     /// Whether a marker at exactly `0 0 0` was not seen.
@@ -17,7 +17,7 @@ pub struct Dialect {
 /// # Errors
 ///
 /// `trc/empty`, `trc/not-trc`, `trc/truncated`, `trc/keys`, `trc/labels`, `trc/no-rows`,
-/// `trc/cell` (a cell that is no number, with line and column), `trc/too-many-cells`,
+/// `trc/cell` (a cell that is not a number, with line and column), `trc/too-many-cells`,
 /// `trc/short-rows`, `trc/time`.
 ///
 /// ```
@@ -48,7 +48,7 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Read<Recording>, Error> {
     read_decoded(bytes, read)
 }
 
-/// Reads a recording with choices.
+/// Reads a recording with options.
 ///
 /// # Errors
 ///
@@ -82,10 +82,10 @@ pub fn read_with(text: &str, options: Dialect) -> Result<Read<Recording>, Error>
         warnings.push(
             Diagnostic::warning(
                 "trc/frame-count",
-                format!("NumFrames says {declared}, {} rows follow", times.len()),
+                format!("NumFrames is {declared}, but {} rows follow", times.len()),
             )
             .at(header.values)
-            .with_help("the rows are right"),
+            .with_help("the rows are used"),
         );
     }
     let rate = rate(header.rate, &times, &mut warnings);
@@ -156,7 +156,7 @@ impl Rows<'_> {
                     Diagnostic::warning("trc/space-gaps", "a row without tabs has too few cells")
                         .at(line.place())
                         .with_help(
-                            "which marker is missing cannot be known; the last ones are taken",
+                            "which markers are missing is unknown; the last ones are assumed",
                         )
                 });
             }
@@ -251,7 +251,7 @@ impl Rows<'_> {
 
 fn not_a_number(line: Line<'_>, cell: &str, what: &str) -> Error {
     let help = if cell.contains(',') && number(&cell.replace(',', ".")).is_some() {
-        format!("write {}: decimals are marked by a point", cell.replace(',', "."))
+        format!("write {}: the decimal separator is a point", cell.replace(',', "."))
     } else {
         format!("expected {what}; a missing value is a blank cell")
     };
@@ -274,15 +274,15 @@ fn rate(declared: Option<f64>, times: &[f64], warnings: &mut Warnings) -> f64 {
         warnings.push(
             Diagnostic::warning(
                 "trc/rate",
-                format!("DataRate says {declared} Hz, the times say {measured:.3} Hz"),
+                format!("DataRate is {declared} Hz, but the times give {measured:.3} Hz"),
             )
-            .with_help("frames are taken at their times"),
+            .with_help("the times are used"),
         );
     }
     declared.or(measured).unwrap_or(0.0)
 }
 
-/// Turns positions into metres, by a guess where the file does not say what they are.
+/// Converts positions to metres, with a guessed unit where the file states none.
 fn convert(
     recording: &mut Recording,
     unit: Option<LengthUnit>,

@@ -1,4 +1,4 @@
-//! Writing: the plainest dialect, which every reader takes.
+//! Writing: the simplest dialect, which every reader accepts.
 
 use crate::text::{decimal, plain};
 use condyle_diagnostics::Error;

@@ -52,7 +52,7 @@ impl<'d> Element<'d> {
         })
     }
 
-    /// The element as a person would point at it: `<Body name="tibia_r">`.
+    /// The element as it is shown in messages: `<Body name="tibia_r">`.
     ///
     /// ```
     /// use condyle_formats::XmlDocument;
@@ -151,7 +151,7 @@ impl<'d> Element<'d> {
         pairs.iter().map(|(n, v)| (document.slice(*n), document.slice(*v)))
     }
 
-    /// An attribute that must be there and not blank, trimmed.
+    /// A required attribute that must not be blank, trimmed.
     ///
     /// # Errors
     ///
@@ -190,7 +190,7 @@ impl<'d> Element<'d> {
     ///
     /// # Errors
     ///
-    /// `xml/number`, naming the part that is none.
+    /// `xml/number`, naming the part that is not a number.
     ///
     /// ```
     /// use condyle_formats::XmlDocument;
@@ -214,7 +214,7 @@ impl<'d> Element<'d> {
             .collect()
     }
 
-    /// The text as exactly so many numbers.
+    /// The text as exactly `N` numbers.
     ///
     /// # Errors
     ///
@@ -227,7 +227,7 @@ impl<'d> Element<'d> {
         })
     }
 
-    /// The text as a truth: `true`, `false`, `1`, `0`, `yes` or `no`, in any case.
+    /// The text as a boolean: `true`, `false`, `1`, `0`, `yes` or `no`, in any case.
     ///
     /// # Errors
     ///

@@ -1,7 +1,7 @@
 //! XML as the model formats use it: elements by name, numbers in text, no document types.
 //!
 //! A thin tree over [`roxmltree`], which does the parsing. It owns its text, is flat in memory,
-//! and refuses what no model needs: document type declarations, more than [`MAX_DEPTH`] nested
+//! and rejects what no model needs: document type declarations, more than [`MAX_DEPTH`] nested
 //! elements, more than [`MAX_NODES`] nodes, more than 512 MiB. Names are without their prefix.
 //!
 //! Files that are nearly XML are repaired first, with a warning for each repair: colons in names
@@ -73,7 +73,7 @@ struct Span {
 }
 
 impl XmlDocument {
-    /// Parses a text, after repairing what [the module](self) names.
+    /// Parses a text, after the repairs listed in [the module](self).
     ///
     /// # Errors
     ///
@@ -102,7 +102,7 @@ impl XmlDocument {
     pub fn from_bytes(bytes: &[u8]) -> Result<Read<Self>, Error> {
         let text = decode(bytes)?;
         let mut read = Self::parse(&text.value)?;
-        // A file that says it is Latin-1 was read as it asked to be.
+        // A file that declares Latin-1 was read correctly: no warning.
         let head: String = text.value.chars().take(200).collect::<String>().to_lowercase();
         if !head.contains("encoding=\"iso-8859-1\"") && !head.contains("encoding=\"windows-1252\"")
         {
@@ -182,8 +182,8 @@ impl XmlDocument {
         }
     }
 
-    /// The heap holds less than the text, and that is bounded far below 4 GiB; a span that
-    /// would not fit is empty.
+    /// Appends a text to the heap. The heap is smaller than the document, which is limited far
+    /// below 4 GiB; a span that would not fit is empty.
     fn keep(&mut self, text: &str) -> Span {
         let start = u32::try_from(self.heap.len());
         let end = u32::try_from(self.heap.len() + text.len());
@@ -197,7 +197,7 @@ impl XmlDocument {
     }
 }
 
-/// The parser's complaint in the words and places of this crate.
+/// The parser's error with the wording and places of this crate.
 fn explain(error: &roxmltree::Error, text: &str) -> Error {
     let position = error.pos();
     let sentence = error.to_string();
@@ -228,7 +228,7 @@ fn explain(error: &roxmltree::Error, text: &str) -> Error {
         roxmltree::Error::NoRootNode => Error::new("xml/syntax", "there is no element")
             .at(Place::at_line(1))
             .with_help("this is not an XML file"),
-        // The parser gives the end of the text no place of its own.
+        // The parser gives no place for the end of the text.
         roxmltree::Error::UnexpectedEndOfStream => {
             Error::new("xml/syntax", "the text ends inside a tag")
                 .at(last_line(text))

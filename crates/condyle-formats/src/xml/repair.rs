@@ -1,13 +1,13 @@
-//! The linear look over a text before it is parsed: bounds are checked and what many programs
-//! write although XML forbids it is put right.
+//! One pass over a text before it is parsed: size limits are checked, and common violations of the
+//! XML grammar are repaired.
 //!
-//! Repairs keep every byte where it was, so that places in messages are places in the file:
+//! Repairs keep the position of every byte, so that places in messages are places in the file:
 //!
 //! - a colon in a name with an undeclared prefix (`<HuntCrossleyForce::ContactParametersSet>`,
 //!   in 9 of 60 official OpenSim models) becomes `_`;
-//! - whatever stands before `<?xml`, and that declaration itself, becomes spaces;
-//! - a comment that holds `--` becomes spaces, and so does a closing tag that closes nothing
-//!   (OpenSim's own task sets end with a `</OpenSimDocument>` that they never opened).
+//! - whatever precedes `<?xml`, and that declaration itself, becomes spaces;
+//! - a comment that holds `--` becomes spaces, and so does a closing tag without an opening one
+//!   (OpenSim's own task sets end with a stray `</OpenSimDocument>`).
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -16,7 +16,7 @@ use super::{MAX_ATTRIBUTES, MAX_DEPTH, MAX_PREFIXES};
 use crate::text::column_at;
 use condyle_diagnostics::{Diagnostic, Error, Place, Warnings};
 
-/// The text as a namespace-aware parser takes it.
+/// The text in a form that a namespace-aware parser accepts.
 pub(super) fn repair<'a>(text: &'a str, warnings: &mut Warnings) -> Result<Cow<'a, str>, Error> {
     let mut scan = Scan::new(text);
     scan.run()?;
@@ -54,7 +54,7 @@ pub(super) fn repair<'a>(text: &'a str, warnings: &mut Warnings) -> Result<Cow<'
         .map_err(|_| Error::new("xml/encoding", "the text could not be repaired"))
 }
 
-/// What becomes spaces.
+/// What is replaced by spaces.
 #[derive(Debug, Clone, Copy)]
 enum Blank {
     BeforeDeclaration,
@@ -101,7 +101,7 @@ impl<'a> Places<'a> {
         Self { text, line: 1, line_start: 0, reached: 0 }
     }
 
-    /// The place of an offset that is not before the last one asked for.
+    /// The place of an offset that is not before the previous one requested.
     pub(super) fn at(&mut self, offset: usize) -> Place {
         let bytes = self.text.as_bytes();
         while self.reached < offset {
@@ -117,8 +117,8 @@ impl<'a> Places<'a> {
                 self.line_start = self.reached;
             }
         }
-        // A model on one line would make counting characters quadratic: beyond a width that
-        // nobody reads, columns are bytes.
+        // Counting the characters of a model on a single line would take quadratic time: beyond
+        // this width, columns are counted in bytes.
         let width = offset.saturating_sub(self.line_start);
         let column = if width > 4096 {
             width + 1
@@ -129,14 +129,14 @@ impl<'a> Places<'a> {
     }
 }
 
-/// What one pass over the markup finds.
+/// The results of one pass over the markup.
 struct Scan<'a> {
     text: &'a str,
     at: usize,
     depth: usize,
     /// Prefixes in scope, each with the depth of the element that declared it.
     prefixes: Vec<(usize, &'a str)>,
-    /// Names whose colons must go.
+    /// Names whose colons must be replaced.
     colons: Vec<Range<usize>>,
     blanks: Vec<(Range<usize>, Blank)>,
 }
@@ -147,7 +147,7 @@ impl<'a> Scan<'a> {
         Self { text, at: 0, depth: 0, prefixes, colons, blanks }
     }
 
-    /// Walks from tag to tag. Broken markup ends the walk: the parser says what is wrong.
+    /// Walks from tag to tag. Broken markup ends the walk: the parser reports the error.
     fn run(&mut self) -> Result<(), Error> {
         self.declaration();
         while let Some(found) = self.text.get(self.at..).and_then(|rest| rest.find('<')) {
@@ -181,7 +181,7 @@ impl<'a> Scan<'a> {
         Ok(())
     }
 
-    /// Blanks what precedes `<?xml`, together with the declaration, where something does.
+    /// If anything precedes `<?xml`, replaces it and the declaration by spaces.
     fn declaration(&mut self) {
         let before = |found: usize| self.text.get(..found).unwrap_or_default();
         let Some(found) = self.text.find("<?xml").filter(|f| *f > 0) else { return };
@@ -298,7 +298,7 @@ impl<'a> Scan<'a> {
         self.depth = self.depth.saturating_sub(1);
     }
 
-    /// Notes a name whose colons a namespace-aware parser would refuse.
+    /// Records a name whose colons a namespace-aware parser would reject.
     fn judge(&mut self, name: Range<usize>, attribute: bool) {
         let Some(written) = self.text.get(name.clone()).filter(|n| n.contains(':')) else { return };
         let fine = match written.split_once(':') {

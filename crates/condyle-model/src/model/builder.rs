@@ -15,7 +15,7 @@ use condyle_diagnostics::{Error, Read, Severity};
 use condyle_math::function::{Function, FunctionOfSeveral};
 use condyle_math::{Affine, Vec3};
 
-/// A model in the making.
+/// A model under construction.
 ///
 /// Every method adds one thing and returns its position, to be used by the next; nothing is checked
 /// before [`ModelBuilder::build`], which reports everything that is wrong at once.
@@ -49,7 +49,7 @@ impl ModelBuilder {
         self.model.up = up;
     }
 
-    /// A segment, welded to its parent (or to the world) at its own origin until told otherwise.
+    /// A segment, welded to its parent (or to the world) at its own origin until that is changed.
     pub fn segment(&mut self, name: &str, parent: Option<SegmentId>) -> SegmentId {
         self.model.segments.push(Segment {
             name: name.to_owned(),
@@ -62,7 +62,7 @@ impl ModelBuilder {
         SegmentId(self.model.segments.len() as u32 - 1)
     }
 
-    /// Hangs a segment on another parent, which may have been made after it.
+    /// Attaches a segment to another parent, which may have been added after it.
     pub fn set_parent(&mut self, segment: SegmentId, parent: Option<SegmentId>) {
         self.model.segments[segment.index()].parent = parent;
     }
@@ -114,7 +114,7 @@ impl ModelBuilder {
         CoordinateId(self.model.coordinates.len() as u32 - 1)
     }
 
-    /// Everything about a coordinate, to be changed in place.
+    /// A coordinate, to be changed in place.
     pub fn coordinate_mut(&mut self, id: CoordinateId) -> &mut Coordinate {
         &mut self.model.coordinates[id.index()]
     }
@@ -217,7 +217,7 @@ impl ModelBuilder {
         self.component(set, name, Component::Place(Place { child_in_parent }))
     }
 
-    /// A frame that glides on an ellipsoid with these half axes (metres), as OpenSim has it.
+    /// A frame that glides on an ellipsoid with these semi-axes (metres), as in OpenSim.
     pub fn ellipsoid(
         &mut self,
         set: JointSetId,
@@ -229,7 +229,7 @@ impl ModelBuilder {
         self.component(set, name, Component::Ellipsoid(Ellipsoid { angles, radii, axis }))
     }
 
-    /// The end of a bent column.
+    /// The end of an arc of constant curvature.
     pub fn constant_curvature(
         &mut self,
         set: JointSetId,
@@ -295,7 +295,7 @@ impl ModelBuilder {
         self.model.closures.push(closure);
     }
 
-    /// Segments that grow together when the model is scaled; a segment is in one group at most.
+    /// Segments with a common factor when the model is scaled; a segment is in one group at most.
     pub fn size_group(&mut self, name: &str, segments: Vec<SegmentId>) {
         self.model.size_groups.push(SizeGroup { name: name.to_owned(), segments });
     }

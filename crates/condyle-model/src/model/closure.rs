@@ -6,7 +6,7 @@ use condyle_math::{Affine, Vec3};
 
 /// A condition between segments that no component satisfies by construction.
 ///
-/// Tracking meets closures; plain evaluation does not solve them. A segment of `None` is the world.
+/// Tracking enforces closures; evaluation does not. A segment of `None` is the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Closure {
     /// Its name in messages.
@@ -15,7 +15,7 @@ pub struct Closure {
     pub condition: Condition,
 }
 
-/// What a [`Closure`] asks for.
+/// The condition of a [`Closure`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Condition {
     /// Two points, each fixed in its segment, coincide: p₁ - p₂ = 0 (three rows, metres).
@@ -35,8 +35,8 @@ pub enum Condition {
         /// The distance in metres.
         distance: f64,
     },
-    /// A coordinate equals a function of another: q - f(p) = 0 (one row). Only couplings that go
-    /// in a circle end here; all others are evaluated, exactly and for free.
+    /// A coordinate equals a function of another: q - f(p) = 0 (one row). Only cyclic couplings
+    /// become closures; all others are evaluated, exactly and without a solver.
     Coupling {
         /// The coordinate that should follow.
         follower: CoordinateId,

@@ -1,4 +1,4 @@
-//! Coordinates: the few numbers that a person gives.
+//! Coordinates: the few numbers that a user sets.
 
 use super::JointSetId;
 use crate::component::Signal;
@@ -11,11 +11,11 @@ pub enum CoordinateKind {
     Rotation,
     /// A distance in metres.
     Translation,
-    /// A factor of size without unit; 1 when nothing is said.
+    /// A scale factor without unit; 1 by default.
     Scale,
     /// None of these: a weight, or an angle mixed with a distance.
     Other,
-    /// A rotation in space: four stored numbers x, y, z, w that move in three.
+    /// A rotation in space: four stored numbers x, y, z, w with three degrees of freedom.
     Orientation,
 }
 
@@ -34,7 +34,7 @@ impl CoordinateKind {
         }
     }
 
-    /// In how many independent directions it moves.
+    /// The number of independent directions in which it moves.
     pub fn tangent(self) -> usize {
         if self == Self::Orientation { 3 } else { 1 }
     }
@@ -60,7 +60,7 @@ pub struct Coordinate {
     pub joint_set: JointSetId,
     /// What it measures.
     pub kind: CoordinateKind,
-    /// Its value when nothing is said: one number, or x, y, z, w.
+    /// Its value unless another is given: one number, or x, y, z, w.
     pub default: [f64; 4],
     /// Its range, of a kind that is one number.
     pub range: Range,

@@ -1,7 +1,7 @@
-//! What a character is made of: segments, coordinates, joint sets, markers, closures.
+//! The parts of a character: segments, coordinates, joint sets, markers, closures.
 //!
 //! A [`Model`] is constant: it is made by a [`ModelBuilder`], which checks everything once, and is
-//! then shared. Items refer to each other by typed positions ([`SegmentId`] and its kin); names are
+//! then shared. Items refer to each other by typed positions (such as [`SegmentId`]); names are
 //! for people and files.
 
 mod builder;
@@ -37,14 +37,14 @@ pub enum UpAxis {
     Z,
 }
 
-/// A few coordinates and the network of components that makes motions of them.
+/// A few coordinates and the network of components that computes motions from them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointSet {
     /// Its name, unique in the model.
     pub name: String,
 }
 
-/// A point fixed in a segment that a recording also knows.
+/// A point fixed in a segment whose position is recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Marker {
     /// Its name.
@@ -178,17 +178,17 @@ impl Model {
         self.stored_offsets.last().map_or(0, |&n| n as usize)
     }
 
-    /// In how many directions all coordinates move together.
+    /// The total number of directions of all coordinates.
     pub fn tangent_len(&self) -> usize {
         self.tangent_offsets.last().map_or(0, |&n| n as usize)
     }
 
-    /// Where a coordinate's numbers stand among all stored ones.
+    /// The positions of a coordinate's numbers among all stored ones.
     pub fn stored_range(&self, id: CoordinateId) -> std::ops::Range<usize> {
         self.stored_offsets[id.index()] as usize..self.stored_offsets[id.index() + 1] as usize
     }
 
-    /// Where a coordinate's directions stand among all.
+    /// The positions of a coordinate's directions among all.
     pub fn tangent_range(&self, id: CoordinateId) -> std::ops::Range<usize> {
         self.tangent_offsets[id.index()] as usize..self.tangent_offsets[id.index() + 1] as usize
     }
@@ -214,8 +214,8 @@ impl Model {
         self.coordinates.iter().flat_map(|c| c.default[..c.kind.stored()].iter().copied()).collect()
     }
 
-    /// Between two sets of stored numbers: straight for single numbers, along the shortest arc for
-    /// orientations. How a joint interpolates is settled by the coordinates it is made of.
+    /// Interpolates between two sets of stored numbers: linearly for single numbers, along the
+    /// shortest arc for orientations. How a joint interpolates depends on its coordinates only.
     ///
     /// `share` runs from 0 (`from`) to 1 (`to`); all slices have [`Model::stored_len`] numbers.
     ///
@@ -298,7 +298,7 @@ impl Model {
     pub(crate) fn compensated_path(&self, compensate: &Compensate) -> Vec<SegmentId> {
         let mut path = vec![];
         let mut here = self.segment(compensate.segment).parent;
-        // A circle of parents is reported elsewhere; here it only must not go on for ever.
+        // A cycle of parents is reported elsewhere; here the loop only has to end.
         while let Some(id) = here
             && path.len() < self.segments.len()
         {

@@ -1,4 +1,4 @@
-//! A model of another size: every length fixed in a bone grows with that bone.
+//! Scaling of a model: every length fixed in a bone is scaled with that bone.
 //!
 //! With a factor s for each segment, 1 for the world:
 //!
@@ -9,18 +9,19 @@
 //! length inside a joint    · s(parent)
 //! ```
 //!
-//! Directions, angles and everything without a unit stay. So with one factor for all segments every
-//! place of a posture, seen from the root, is that many times as far away, and no rotation changes.
+//! Directions, angles and everything without a unit are unchanged. So with one factor for all
+//! segments, the distance of every point from the root is multiplied by it, and no rotation
+//! changes.
 //!
 //! Lengths inside a joint are the places of [`Place`](crate::component::Place), the centres of
-//! [`Pivot`]s, half axes and arcs, and what a [`Map`](crate::component::Map) or a
-//! [`Combine`](crate::component::Combine) hands to a [`Translate`](crate::component::Translate).
-//! A component that moves several segments grows with the parent of the first of them. A contact
-//! knows its two bones: points grow with the one that glides, the ellipsoid with the one below.
+//! [`Pivot`]s, semi-axes and arcs, and what a [`Map`](crate::component::Map) or a
+//! [`Combine`](crate::component::Combine) passes to a [`Translate`](crate::component::Translate). A
+//! component that moves several segments is scaled with the parent of the first of them. A contact
+//! has two bones: its points are scaled with the one that glides, the ellipsoid with the one below.
 //!
-//! A distance that is a coordinate itself, as where a pelvis is in a room, is what the caller gives
-//! and stays. Where it is one between two bones, its default and its range grow, since a kneecap that
-//! rests 4 cm above a joint rests higher above a larger one.
+//! A distance that is itself a coordinate, such as the position of a pelvis in a room, is given by
+//! the caller and unchanged. If it is a distance between two bones, its default and its range are
+//! scaled, since a patella that rests 4 cm above a joint rests higher above a larger one.
 
 use super::{Condition, CoordinateKind, Model, NamedComponent, SegmentId};
 use crate::component::{Centre, Component, ContactPair, Gliding, Pivot, Signal};
@@ -32,7 +33,7 @@ use condyle_math::function::{
 use condyle_math::{Affine, Vec3};
 use std::collections::{BTreeMap, HashMap};
 
-/// Segments that grow together, such as the bones of both thighs.
+/// Segments with a common scale factor, such as the bones of both thighs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SizeGroup {
     /// Its name, unique in the model.
@@ -41,10 +42,10 @@ pub struct SizeGroup {
     pub segments: Vec<SegmentId>,
 }
 
-/// Who reads each output of a function as a length, and the factor it takes.
+/// The readers of each output of a function as a length, and the factor for each.
 type Lengths = BTreeMap<(usize, u32), Vec<(Reader, f64)>>;
 
-/// Who reads a number as a length.
+/// What reads a number as a length.
 #[derive(Clone, Copy)]
 enum Reader {
     /// A translation, by its position among the components.
@@ -54,7 +55,7 @@ enum Reader {
 }
 
 impl Model {
-    /// The groups of segments that grow together; a segment in none belongs to the body's size.
+    /// The groups of segments with a common scale factor; a segment in none has that of the body.
     pub fn size_groups(&self) -> &[SizeGroup] {
         &self.size_groups
     }
@@ -63,12 +64,13 @@ impl Model {
     ///
     /// `factors` has one for each segment, in their order; one that is missing or not a positive
     /// finite number counts as 1. A joint's frame in the parent, and the lengths inside the joint,
-    /// grow with the parent; its frame in the segment, markers and ends of loops with their segment.
-    /// A component that moves several segments grows with the parent of the first of them.
+    /// are scaled with the parent; its frame in the segment, markers and ends of loops with their
+    /// segment. A component that moves several segments is scaled with the parent of the first of
+    /// them.
     ///
-    /// Angles stay, and so does what is fixed in the world, every coordinate that is a distance itself
-    /// (but its default and range grow where it lies between two segments), bounds of distances that
-    /// a [`Depend`](crate::component::Depend) sets, and the law of a user.
+    /// Unchanged are angles, everything fixed in the world, every coordinate that is itself a
+    /// distance (but its default and range are scaled if it is between two segments), bounds of
+    /// distances that a [`Depend`](crate::component::Depend) sets, and user-defined laws.
     ///
     /// ```
     /// use condyle_math::Vec3;
@@ -109,8 +111,8 @@ impl Model {
         model
     }
 
-    /// The model with markers at other places of their segments (metres), in the order of the
-    /// markers; `None` and what is missing leave a marker where it is.
+    /// The model with markers at other points of their segments (metres), in the order of the
+    /// markers; a marker with `None`, or without an entry, is unchanged.
     #[must_use]
     pub fn with_markers_at(&self, points: &[Option<Vec3>]) -> Self {
         let mut model = self.clone();
@@ -146,10 +148,10 @@ impl Model {
         found
     }
 
-    /// Makes functions that hand out distances larger; answers with the factor of each coordinate
-    /// that is one.
+    /// Scales functions that give distances; returns the factor of each coordinate that is a
+    /// distance.
     ///
-    /// A number that is read as a distance and as something else is made twice.
+    /// A number that is read as a distance and as something else becomes two outputs.
     fn grow_distances(&mut self, of_component: &[f64]) -> Vec<f64> {
         let mut of_coordinate: Vec<Option<f64>> = vec![None; self.coordinates.len()];
         let mut lengths = Lengths::new();
@@ -185,7 +187,7 @@ impl Model {
             Signal::Coordinate(id) => of_coordinate[id.index()],
             Signal::Output(..) => 1.0,
         };
-        // Arguments first: what was said of a distance holds at the larger one.
+        // Arguments first: a function of a distance takes the scaled distance.
         for named in &mut self.components {
             match &mut named.component {
                 Component::Map(c) => {
@@ -219,7 +221,7 @@ impl Model {
         of_coordinate
     }
 
-    /// Distances that reach a translation by way of a function only.
+    /// Distances that reach a translation through a function only.
     fn find_led_distances(&self, lengths: &Lengths, of_coordinate: &mut [Option<f64>]) {
         for (&(index, _), users) in lengths {
             let inputs = self.components[index].component.inputs();
@@ -283,11 +285,11 @@ fn grow(frame: &mut Affine, factor: f64) {
     frame.translation = frame.translation * factor;
 }
 
-/// The lengths that a component holds itself.
+/// Scales the lengths that a component holds itself.
 fn grow_component(component: &mut Component, factor: f64, of: &impl Fn(Option<SegmentId>) -> f64) {
     if let Component::Contact(c) = component {
         let (own, below) = (of(Some(c.segment)), of(Some(c.surface)));
-        // Made anew only where it changes, so that factor 1 leaves every bit.
+        // Rebuilt only where it changes, so that factor 1 keeps every bit.
         if (own, below) == (1.0, 1.0) {
             return;
         }
@@ -368,7 +370,7 @@ fn grow_condition(
         Condition::Frames { at } => at.iter_mut().for_each(|(id, frame)| grow(frame, of(*id))),
         Condition::Distance { at, distance } => {
             at.iter_mut().for_each(|(id, p)| *p = *p * of(*id));
-            // A ligament between two bones grows with both, one to the world with its bone.
+            // A ligament between two bones is scaled with both, one to the world with its bone.
             *distance *= match at.each_ref().map(|(id, _)| *id) {
                 [Some(a), Some(b)] => (of(Some(a)) * of(Some(b))).sqrt(),
                 [one, other] => of(one.or(other)),
@@ -418,7 +420,7 @@ fn grow_spline(spline: &mut SimmSpline, result: f64, argument: f64) {
     }
 }
 
-/// What is wrong with the groups of a model: names given twice, segments in two groups.
+/// Errors of the groups of a model: duplicate names, segments in two groups.
 pub(super) fn check_groups(model: &Model) -> Vec<Diagnostic> {
     let mut findings = vec![];
     let mut error = |group: &SizeGroup, message: String, help: &str| {

@@ -6,8 +6,8 @@ pub(super) fn crates_in_order(map: &str) -> Vec<&str> {
     names.map(|(name, _)| name).filter(|name| is_of_this_project(name)).collect()
 }
 
-/// The folders of the table, each from the folder of crates, with a `/` at the end. A name that
-/// does not begin with a crate stands beside the one before it in its row.
+/// The folders of the table, each relative to the folder of crates, with a `/` at the end. A name
+/// that does not begin with a crate is a sibling of the one before it in its row.
 pub(super) fn folders(map: &str) -> Vec<String> {
     let mut found = vec![];
     for cell in first_cells(map) {

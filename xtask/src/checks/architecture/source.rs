@@ -1,7 +1,7 @@
-//! What a source uses of the standard library, and what of it the core does without.
+//! What a source uses of the standard library, and which of it the core must not use.
 
-/// Modules of the standard library that the core has no use for: they reach out of the program,
-/// and most of them panic or fail in a browser.
+/// Modules of the standard library that the core must not use: they access the system, and most of
+/// them panic or fail in a browser.
 const NOT_IN_CORE: [&str; 7] = ["env", "fs", "net", "os", "path", "process", "thread"];
 
 /// What a source of the core must not use, each with its line.
@@ -10,21 +10,21 @@ pub(super) fn forbidden_in_core(text: &str) -> Vec<(usize, String)> {
     paths.filter_map(|(line, path)| Some((line, forbidden(&path)?))).collect()
 }
 
-/// What a path names that the core does without.
+/// What a path names that the core must not use.
 fn forbidden(path: &str) -> Option<String> {
     let mut parts = path.split("::").skip(1);
     match (parts.next()?, parts.next()) {
-        // Under another name everything could be reached.
+        // Under another name everything would be accessible.
         ("self" | "*", _) => Some("all of std".to_owned()),
         ("time", None | Some("self" | "*")) => Some("all of std::time".to_owned()),
-        // A length of time is a number; what the clock says is not.
+        // A duration is a number; the time of a clock is not.
         ("time", Some(name)) if !name.starts_with("Duration") => Some(format!("std::time::{name}")),
         (module, _) if NOT_IN_CORE.contains(&module) => Some(format!("std::{module}")),
         _ => None,
     }
 }
 
-/// Every path that begins at `std`, groups in braces spelled out, with the line of its last name.
+/// Every path that begins at `std`, groups in braces expanded, with the line of its last name.
 fn std_paths(text: &str) -> Vec<(usize, String)> {
     let words = words(text);
     let mut found = vec![];
@@ -38,7 +38,7 @@ fn std_paths(text: &str) -> Vec<(usize, String)> {
 fn follow(words: &[(usize, &str)], found: &mut Vec<(usize, String)>) {
     let Some((&(mut line, first), rest)) = words.split_first() else { return };
     let mut path = Some(first.to_owned());
-    // What stands before each group that is open here.
+    // The prefix of each group that is open here.
     let mut groups: Vec<String> = vec![];
     let (mut name_follows, mut alias_follows) = (false, false);
     for &(at, word) in rest {
@@ -70,11 +70,11 @@ fn follow(words: &[(usize, &str)], found: &mut Vec<(usize, String)>) {
             _ => break,
         }
     }
-    // A word `std` that nothing follows is somebody's variable.
+    // A word `std` without a path after it is a variable.
     found.extend(path.filter(|path| path.contains("::")).map(|path| (line, path)));
 }
 
-/// The words and signs of a source with their lines, without comments, texts and characters.
+/// The words and symbols of a source with their lines, without comments, strings and characters.
 fn words(text: &str) -> Vec<(usize, &str)> {
     let (mut rest, mut line, mut found) = (text, 1, vec![]);
     while let Some(first) = rest.chars().next() {
@@ -106,7 +106,7 @@ fn words(text: &str) -> Vec<(usize, &str)> {
     found
 }
 
-/// How much to skip and to keep where a word may be the prefix of a text or of a raw name.
+/// How much to skip and to keep where a word may be the prefix of a string or of a raw identifier.
 fn prefixed(word: &str, after: &str) -> (usize, usize) {
     let hashes = after.len() - after.trim_start_matches('#').len();
     match (word, after[hashes..].chars().next()) {
@@ -118,7 +118,7 @@ fn prefixed(word: &str, after: &str) -> (usize, usize) {
         }
         ("b" | "c", Some('"')) if hashes == 0 => (word.len() + quoted(after, '"'), 0),
         ("b", Some('\'')) if hashes == 0 => (word.len() + quoted(after, '\''), 0),
-        // A raw name is the name without its mark.
+        // A raw identifier is the identifier without its prefix.
         ("r", Some(_)) if hashes == 1 => (word.len() + 1, 0),
         _ => (0, word.len()),
     }
@@ -140,7 +140,7 @@ fn comment(text: &str) -> usize {
     }
 }
 
-/// The length of a text between two marks, the first of which it begins with.
+/// The length of a string between two quotes, including both.
 fn quoted(text: &str, mark: char) -> usize {
     let mut escaped = false;
     for (at, c) in text.char_indices().skip(1) {
@@ -154,7 +154,7 @@ fn quoted(text: &str, mark: char) -> usize {
     text.len()
 }
 
-/// The length of a character, or of the mark of a lifetime.
+/// The length of a character, or of the quote of a lifetime.
 fn character_or_lifetime(text: &str) -> usize {
     let mut after = text[1..].chars();
     match (after.next(), after.next()) {

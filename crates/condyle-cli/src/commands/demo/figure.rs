@@ -1,6 +1,6 @@
-//! A plain human figure built in Rust, a walk for it, and recordings made of both.
+//! A simple human figure built in Rust, a walk for it, and synthetic recordings of both.
 //!
-//! This is what demonstrations, benches and tests stand on: a body whose motion is known exactly.
+//! Demonstrations, benches and tests use it: a body whose motion is known exactly.
 //! Segment lengths are the fractions of stature of Drillis & Contini (in Winter, *Biomechanics and
 //! Motor Control of Human Movement*); the knee glides as in Yamaguchi & Zajac 1989 and carries a
 //! patella as in Rajagopal et al. 2016. Ranges, marker places and the walk are illustrative.
@@ -29,7 +29,7 @@ pub(crate) fn walker() -> Model {
     }
     match figure.b.build() {
         Ok(model) => model,
-        // The parts are constants; a mistake in them is caught by the first test that runs.
+        // The parts are constants; the first test that runs finds a mistake in them.
         Err(findings) => panic!("the figure is wrong: {findings:?}"),
     }
 }
@@ -48,7 +48,7 @@ impl Figure {
         id
     }
 
-    /// A joint of rotations about given axes, one inside the other.
+    /// A joint of consecutive rotations about given axes.
     fn rotations(&mut self, name: &str, segment: SegmentId, turns: &[(&str, Vec3, [f64; 2])]) {
         let set = self.b.joint_set(name);
         let mut factors = vec![];
@@ -366,16 +366,16 @@ fn stride(name: &str, time: f64) -> f64 {
     }
 }
 
-/// What is wrong with a made recording.
+/// The flaws of a synthetic recording.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Flaws {
     /// Standard deviation of the noise on every marker coordinate, in metres.
     pub(crate) noise: f64,
     /// Share of the frames of each marker that fall into gaps.
     pub(crate) missing: f64,
-    /// Two labels that stand for each other's marker, and the frames in which they do.
+    /// Two labels that are swapped, and the frames in which they are.
     pub(crate) swap: Option<([String; 2], std::ops::Range<usize>)>,
-    /// Where the random numbers start.
+    /// The seed of the random numbers.
     pub(crate) seed: u64,
 }
 
@@ -391,7 +391,7 @@ pub(crate) fn record(model: &Model, motion: &Motion, flaws: &Flaws) -> Recording
         let noise = Vec3::new(dice.normal(), dice.normal(), dice.normal()) * flaws.noise;
         (*x, *y, *z) = (*x + noise.x, *y + noise.y, *z + noise.z);
     }
-    // Gaps of a tenth of a second or so, as when an arm hides a marker.
+    // Gaps of about a tenth of a second, as when an arm hides a marker.
     let length = 12.min(frames.max(1));
     let gaps = (flaws.missing * frames as f64 / length as f64).round() as usize;
     for marker in 0..count {
@@ -425,7 +425,7 @@ impl Dice {
         z ^ (z >> 31)
     }
 
-    /// Evenly in [0, 1).
+    /// Uniform in [0, 1).
     fn even(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
@@ -463,7 +463,7 @@ mod tests {
             program.evaluate(frame, Mode::Open, &mut pose).unwrap();
             lowest = lowest.min(pose.segment(foot).translation.y);
         }
-        // The ankle of a person of 1.75 m stands 0.039 of that above the ground.
+        // The ankle of a person of 1.75 m is 0.039 of that above the ground.
         assert!((lowest - 0.039 * STATURE).abs() < 0.08, "{lowest}");
     }
 

@@ -170,7 +170,7 @@ pub(super) fn to_text(model: &Model) -> String {
     text
 }
 
-/// The tree from its roots, a parent before its children, each level two letters to the right.
+/// The tree from its roots, a parent before its children, each level indented by two spaces.
 fn segment_rows(model: &Model) -> Vec<Vec<String>> {
     let mut children: Vec<Vec<SegmentId>> = vec![vec![]; model.segments().len()];
     let mut open = vec![];
@@ -185,7 +185,7 @@ fn segment_rows(model: &Model) -> Vec<Vec<String>> {
     while let Some((id, depth)) = open.pop() {
         let segment = model.segment(id);
         let set = segment.joint_set.map(|set| model.joint_sets()[set.index()].name.clone());
-        // A tree as deep as a rope is long would be all margin.
+        // The indentation of a very deep tree is limited.
         let margin = " ".repeat(2 * depth.min(40));
         rows.push(vec![
             format!("{margin}{}", segment.name),
@@ -238,7 +238,7 @@ fn coordinate_rows(model: &Model) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// A value with its unit: degrees, millimetres, or metres where the lengths are long.
+/// A value with its unit: degrees, millimetres, or metres for great lengths.
 fn amount(kind: CoordinateKind, value: f64, far: bool) -> String {
     match kind {
         CoordinateKind::Rotation => format!("{}°", rounded(value.to_degrees(), 2)),

@@ -42,7 +42,7 @@ pub(super) fn to_json(setup: &IkSetup) -> Value {
     value["coordinate_file"] = json!(setup.coordinate_file);
     value["output_motion_file"] = json!(setup.output_motion_file);
     value["time_range"] = json!(setup.time_range);
-    // JSON has no infinity: none stands for loops that are closed exactly.
+    // JSON has no infinity: null means loops that are closed exactly.
     value["constraint_weight"] = json!(setup.constraint_weight);
     value["accuracy"] = json!(setup.accuracy);
     value

@@ -4,7 +4,7 @@ use crate::output::columns;
 use condyle::formats::{AngleUnit, Table};
 use serde_json::{Value, json};
 
-/// How many columns are listed for people.
+/// How many columns are listed in text output.
 const MOST_LISTED: usize = 40;
 
 fn unit(table: &Table) -> &'static str {

@@ -119,8 +119,8 @@ fn coordinate(
     }
 }
 
-/// `dependent = scale · f(independents)`: the dependent coordinate follows, unless that would go
-/// in a circle, which is kept as a closure.
+/// `dependent = scale · f(independents)`: the dependent coordinate follows, unless that would be
+/// cyclic; a cyclic coupler is kept as a closure.
 fn coupler(
     reader: &mut Reader<'_, '_>,
     element: Element<'_>,
@@ -145,7 +145,7 @@ fn coupler(
             "osim/coupled-twice",
             element,
             format!("coordinate `{}` is the dependent of two couplers", dependent_at.text()),
-            "the first one holds",
+            "the first one is used",
         );
         return Ok(());
     }
@@ -176,7 +176,7 @@ fn coupler(
                     "osim/cyclic-coupler",
                     element,
                     format!("{} closes a circle of couplers", element.describe()),
-                    "it is kept as a constraint, which tracking meets",
+                    "it is kept as a constraint, which tracking enforces",
                 );
                 let condition = Condition::Coupling { follower: dependent, driver, function };
                 reader.builder.closure(Closure { name, condition });

@@ -8,14 +8,14 @@ use condyle_model::ModelBuilder;
 use std::collections::HashMap;
 
 /// How many bodies, and how many coordinates, a model may have: an order of magnitude beyond any
-/// creature, and far below what would take minutes to pose.
+/// realistic model, and far below a number that would take minutes to pose.
 const MOST_BODIES: usize = 10_000;
 /// How many joints, frames, markers and constraints together.
 const MOST_PARTS: usize = 100_000;
-/// How many frames may be fixed in each other in a row.
+/// How many frames may be fixed in each other in a chain.
 const LONGEST_CHAIN: usize = 256;
 
-/// Counts what a file holds, so that a damaged or hostile one is refused in time.
+/// Counts the parts in a file, so that a damaged or malicious one is rejected early.
 #[derive(Default)]
 struct Parts {
     bodies: usize,
@@ -42,7 +42,7 @@ impl Parts {
         *count += 1;
         if *count > most {
             return Err(element
-                .error("osim/size", format!("{} is one too many", element.describe()))
+                .error("osim/size", format!("{} exceeds the number allowed", element.describe()))
                 .with_help(format!("a model may have {most} of its kind; is the file damaged?")));
         }
         Ok(())
@@ -65,11 +65,11 @@ struct Item<'d> {
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     Base(Base),
-    /// A frame at a fixed place of another.
+    /// A frame fixed in another.
     Offset,
     /// A point of a frame.
     Station,
-    /// A frame through four stations.
+    /// A frame defined by four stations.
     StationDefined,
 }
 
@@ -191,7 +191,7 @@ impl<'d> Frames<'d> {
         }
     }
 
-    /// The frame that the text of `reference` names, as seen from the component `owner`.
+    /// The frame that the text of `reference` names, resolved relative to the component `owner`.
     pub(super) fn resolve(
         &self,
         owner: Element<'d>,
@@ -256,7 +256,7 @@ impl<'d> Frames<'d> {
             .with_help(help))
     }
 
-    /// A frame through stations: its first named axis runs from a to b, the second is normal to
+    /// A frame defined by stations: its first named axis runs from a to b, the second is normal to
     /// the plane of a, b and c.
     fn station_defined(&self, element: Element<'d>) -> Result<(Base, Affine), Error> {
         let station = |socket: &str| -> Result<(Base, Vec3), Error> {
@@ -304,7 +304,10 @@ impl<'d> Frames<'d> {
         let (second, second_sign) = axis("ab_x_ac_axis", "+y")?;
         if first == second || !(along.is_finite() && normal.is_finite()) {
             return Err(element
-                .error("osim/station-frame", format!("{} has no definite axes", element.describe()))
+                .error(
+                    "osim/station-frame",
+                    format!("{} does not determine its axes", element.describe()),
+                )
                 .with_help(
                     "give three stations that do not lie on one line, and two different axes",
                 ));
@@ -318,8 +321,8 @@ impl<'d> Frames<'d> {
         Ok((base, Affine::new(turn, origin)))
     }
 
-    /// As [`Frames::resolve`] for the frame of a station, which must not go through another
-    /// frame of stations: that keeps the search finite.
+    /// As [`Frames::resolve`] for the frame of a station, which must not lead through another
+    /// frame defined by stations, so that the search is finite.
     fn resolve_offset(
         &self,
         owner: Element<'d>,

@@ -26,7 +26,7 @@ pub(super) fn inside(owner: Element<'_>) -> Result<Option<AnyFunction>, Error> {
     }
 }
 
-/// Whether the function inside an element is a multiple of another, if only of 1.
+/// Whether the function inside an element is a multiple of another, even with factor 1.
 pub(super) fn is_multiplied(owner: Element<'_>) -> bool {
     owner.child("function").unwrap_or(owner).child("MultiplierFunction").is_some()
 }
@@ -49,12 +49,12 @@ fn unknown(element: Element<'_>) -> Error {
 
 fn read(mut element: Element<'_>) -> Result<AnyFunction, Error> {
     let mut factor = 1.0;
-    // Multipliers may stand in multipliers: their factors multiply.
+    // Multipliers may be nested: their factors multiply.
     while element.is("MultiplierFunction") {
         factor *= element.child_f64("scale")?.unwrap_or(1.0);
         let inner = element.child("function").unwrap_or(element);
         element = inner.children().find(|e| is_function(*e)).ok_or_else(|| {
-            element.error("osim/no-function", "a MultiplierFunction has nothing to multiply")
+            element.error("osim/no-function", "a MultiplierFunction contains no function")
         })?;
     }
     let knots =

@@ -1,4 +1,4 @@
-//! Joints as joint sets: each OpenSim joint type from the components that hand-written ones use.
+//! Joints as joint sets: each OpenSim joint type is built from the same components as other models.
 //!
 //! | joint | coordinates | motion |
 //! | --- | --- | --- |
@@ -25,7 +25,7 @@ use condyle_model::component::ConstantCurvature;
 use condyle_model::{CoordinateId, CoordinateKind, JointSetId, Range, Signal};
 use std::f64::consts::FRAC_PI_2;
 
-/// One elementary motion, which knows its inverse.
+/// One elementary motion that can be inverted.
 enum Factor {
     Turn(Signal, Vec3),
     Slide(Signal, Vec3),
@@ -58,7 +58,7 @@ pub(super) fn build(reader: &mut Reader<'_, '_>, joint: &PlacedJoint<'_>) -> Res
     Ok(())
 }
 
-/// The inverse motion, for a joint that the file states from the far end.
+/// The inverse motion, for a joint that the file defines from child to parent.
 fn backwards(element: Element<'_>, factors: Vec<Factor>) -> Result<Vec<Factor>, Error> {
     factors
         .into_iter()
@@ -77,7 +77,7 @@ fn backwards(element: Element<'_>, factors: Vec<Factor>) -> Result<Vec<Factor>, 
         .collect()
 }
 
-/// The coordinates of one joint, made in the model as the joint asks for them.
+/// The coordinates of one joint, added to the model when first used.
 struct Coordinates<'d> {
     elements: Vec<Element<'d>>,
     ids: Vec<(String, CoordinateId)>,
@@ -293,7 +293,7 @@ fn custom(
             inputs.push(coordinates.named(element, at, name)?);
         }
         let function = function::inside(axis_element)?;
-        // OpenSim takes an empty <function/> as the coordinate itself, and none at all as 0.
+        // OpenSim reads an empty <function/> as the coordinate itself, and a missing one as 0.
         let absent =
             axis_element.child("function").is_none() && element.child("SpatialTransform").is_some();
         if function.is_none() && absent && !inputs.is_empty() {
@@ -333,8 +333,8 @@ fn custom(
     Ok(slides)
 }
 
-/// The axes of a custom joint with their places, rotations from 0 and translations from 3: by name
-/// where the names are OpenSim's own, else as they stand.
+/// The axes of a custom joint with their positions, rotations from 0 and translations from 3: by
+/// name where the names are OpenSim's own, else in file order.
 fn axes(joint: Element<'_>) -> Vec<(usize, Element<'_>)> {
     const NAMES: [&str; 6] =
         ["rotation1", "rotation2", "rotation3", "translation1", "translation2", "translation3"];
@@ -350,9 +350,9 @@ fn axes(joint: Element<'_>) -> Vec<(usize, Element<'_>)> {
     axes
 }
 
-/// OpenSim calls a coordinate rotational (translational) if some axis takes it as it is, up to
+/// OpenSim calls a coordinate rotational (translational) if some axis takes it unchanged, up to
 /// sign, as its angle (distance), the last such axis deciding; all others are coupled, also those in
-/// a multiplier of 1, and files hold them without degrees.
+/// a multiplier of 1, and files never hold them in degrees.
 fn note_kind(
     kinds: &mut [CoordinateKind],
     coordinates: &Coordinates<'_>,
@@ -366,7 +366,7 @@ fn note_kind(
     }
 }
 
-/// What drives an axis: nothing, a coordinate as it is, or a function of one or several.
+/// What drives an axis: nothing, a coordinate unchanged, or a function of one or several.
 fn amount(
     reader: &mut Reader<'_, '_>,
     set: JointSetId,
@@ -396,7 +396,7 @@ fn amount(
             Ok(Some(reader.builder.map(set, name, *one, function)))
         }
         ([], Some(AnyFunction::One(function))) => {
-            // A constant needs no argument, and any other function is taken at 0.
+            // A constant needs no argument, and any other function is evaluated at 0.
             let value = function.value_and_slope(0.0).0;
             if value == 0.0 {
                 return Ok(None);

@@ -1,11 +1,12 @@
-//! Which joint carries which body: the file's joints as a tree that grows from the ground.
+//! Which joint moves which body: the file's joints as a tree with the ground as its root.
 //!
-//! A joint may be stated from either end, and a body may hang on two joints. The tree takes each
-//! body once, by the fewest joints from the ground and, among those, by the joint stated first; a
-//! joint whose child is already there but whose parent is not is taken backwards, and a joint
-//! between two bodies that are both there closes a loop: it carries a massless double of its child,
-//! which a closure ties to the child itself. Bodies that no joint connects to the ground get a free
-//! joint to it. These are the choices of OpenSim, whose coordinates are thus ours.
+//! A joint may be defined from either end, and a body may be the child of two joints. The tree
+//! contains each body once, by the fewest joints from the ground and, among those, by the joint
+//! that comes first in the file; a joint whose child is already in the tree but whose parent is not
+//! is reversed, and a joint between two bodies that are both in the tree closes a loop: it moves a
+//! massless copy of its child, which a closure connects to the child itself. Bodies that no joint
+//! connects to the ground get a free joint to it. OpenSim makes the same choices, so both programs
+//! have the same coordinates.
 
 use super::{Base, Reader};
 use crate::opensim::model::triple;
@@ -36,7 +37,7 @@ struct Stated<'d> {
     child: (Base, Affine),
 }
 
-/// Finds all joints, hangs every segment on its parent, and sets the joint frames.
+/// Finds all joints, attaches every segment to its parent, and sets the joint frames.
 pub(super) fn collect<'d>(reader: &mut Reader<'d, '_>) -> Result<Vec<PlacedJoint<'d>>, Error> {
     let mut stated = stated_joints(reader)?;
     let bodies: Vec<(Element<'d>, Base)> = reader.frames.bodies().collect();
@@ -60,8 +61,8 @@ pub(super) fn collect<'d>(reader: &mut Reader<'d, '_>) -> Result<Vec<PlacedJoint
     let mut how: Vec<Option<bool>> = vec![None; stated.len()];
     placed[ground] = true;
     let mut level = vec![ground];
-    // Bodies that may have to stand free, the likeliest base first: one that no joint carries, then
-    // the one that carries most.
+    // Candidates for a free joint to the ground, the likeliest base first: bodies that are the
+    // child of the fewest joints, and among these the parent of the most.
     let mut bases: Vec<usize> = (0..ground).collect();
     bases.sort_by_key(|&body| (carried[body], std::cmp::Reverse(children[body])));
     let mut bases = bases.into_iter();
@@ -106,8 +107,8 @@ pub(super) fn collect<'d>(reader: &mut Reader<'d, '_>) -> Result<Vec<PlacedJoint
 }
 
 /// OpenSim 4 rewrites the joint frames of older files as text of six significant digits before it
-/// reads them, so that is where its bodies stand: 2.0943951 rad becomes 2.0944, which moves a hand
-/// by 8 micrometres. We follow it, so that both programs pose the same model.
+/// reads them: 2.0943951 rad becomes 2.0944, which moves a hand by 8 micrometres. We round in the
+/// same way, so that both programs pose the same model.
 fn six_digits(v: Vec3) -> Vec3 {
     let round = |x: f64| format!("{x:.5e}").parse().unwrap_or(x);
     Vec3::new(round(v.x), round(v.y), round(v.z))
@@ -150,7 +151,7 @@ fn stated_joints<'d>(reader: &mut Reader<'d, '_>) -> Result<Vec<Stated<'d>>, Err
 /// Gives unnamed and twice-named joints names of their own: `hip`, `hip_0`, `hip_1`.
 fn name_apart(reader: &mut Reader<'_, '_>, stated: &mut [Stated<'_>]) {
     let mut taken: HashSet<String> = stated.iter().map(|joint| joint.name.clone()).collect();
-    // For every name met, the first number not tried yet: each is tried once, however many twins.
+    // For every name, the first number not yet tried: each is tried once, however many duplicates.
     let mut next: HashMap<String, usize> = HashMap::new();
     for joint in stated {
         let unnamed = joint.name.is_empty();
@@ -183,7 +184,7 @@ fn place<'d>(
     how: Option<bool>,
 ) -> Result<PlacedJoint<'d>, Error> {
     let Stated { element, kind, name, parent, child } = joint;
-    // Before version 4 a joint could say itself that it is stated from child to parent.
+    // Before version 4 a joint could be marked as defined from child to parent.
     let reversed = element.child_bool("reverse")?.unwrap_or(false);
     let (from, to, backwards) = match how {
         Some(true) => (child, parent, true),

@@ -1,7 +1,7 @@
-//! Musculoskeletal models of OpenSim (`.osim`), as far as they say how bones move.
+//! Musculoskeletal models of OpenSim (`.osim`), as far as they describe the motion of bones.
 //!
 //! Two generations are read into the same [`Model`]. Files of version 4 keep a `JointSet` whose
-//! joints name their frames by paths; older ones keep each joint inside the body it carries:
+//! joints name their frames by paths; older ones keep each joint inside the body that it moves:
 //!
 //! ```text
 //! OpenSimDocument Version=4xxxx          OpenSimDocument Version=1xxxx … 3xxxx
@@ -14,11 +14,11 @@
 //!   ├ ConstraintSet, MarkerSet
 //! ```
 //!
-//! Every joint becomes a joint set of the same components that hand-written ones use: a pin is a
-//! `rotate`, a custom joint a product of `translate` and `rotate` components whose numbers come
-//! from `map` components, a coordinate coupler lets one coordinate follow another. Constraints that
-//! close loops are kept as closures. Masses, muscles and forces are skipped in silence; anything
-//! that would change the motion and is not understood is an error or a warning.
+//! Every joint becomes a joint set of the same components as in other models: a pin is a `rotate`,
+//! a custom joint a product of `translate` and `rotate` components whose numbers come from `map`
+//! components, a coordinate coupler lets one coordinate follow another. Constraints that close
+//! loops are kept as closures. Masses, muscles and forces are skipped without a warning; anything
+//! that would change the motion and is not supported is an error or a warning.
 
 mod constraint;
 mod frame;
@@ -36,8 +36,8 @@ use frame::Frames;
 /// Reads a model from the bytes of an `.osim` file.
 ///
 /// # Errors
-/// What is wrong, with its line: not XML, not a model, names that lead nowhere or in a circle,
-/// joints or functions that are not known, lists of the wrong length.
+/// What is wrong, with its line: not XML, not a model, names that are unknown or cyclic, joints or
+/// functions that are not known, lists of the wrong length.
 ///
 /// ```
 /// let text = r#"<OpenSimDocument Version="40000"><Model name="arm">
@@ -100,9 +100,10 @@ impl<'d, 'w> Reader<'d, 'w> {
         warn_of_degrees(&model, self.element, self.warnings);
         let directions = directions(&model);
         if directions > MOST_DIRECTIONS {
-            let message = format!("the coordinates move segments in {directions} ways");
+            let message =
+                format!("the model has {directions} pairs of a segment and a direction of motion");
             return Err(Error::new("osim/size", message)
-                .with_help(format!("at most {MOST_DIRECTIONS} are computed; use fewer bodies"))
+                .with_help(format!("at most {MOST_DIRECTIONS} are allowed; use fewer bodies"))
                 .at(line));
         }
         self.warnings.extend(warnings.into_iter().filter(|w| w.code != AXIS_LENGTH).collect());
@@ -162,7 +163,7 @@ fn at_model(error: Error, line: Place) -> Error {
     Error::of(located).unwrap_or_else(unsaid).contradiction()
 }
 
-/// Angles in a model are radians: a range of several turns that is at most 360 was meant in degrees.
+/// Angles in a model are radians: a range of several turns up to 360 was probably given in degrees.
 fn warn_of_degrees(model: &Model, element: Element<'_>, warnings: &mut Warnings) {
     let turns = 4.0 * std::f64::consts::PI..=360.0;
     for coordinate in model.coordinates() {

@@ -1,4 +1,4 @@
-//! What can be wrong with components.
+//! Errors of components.
 
 use super::{AXIS_LENGTH, finding, source_type};
 use crate::component::{
@@ -10,7 +10,7 @@ use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_math::Vec3;
 use std::fmt;
 
-/// A component as sentences and reports name it.
+/// A component as named in messages and reports.
 struct Part {
     sentence: String,
     subject: Subject,
@@ -120,7 +120,7 @@ fn check_axis(place: &Part, name: &str, axis: Vec3, findings: &mut Vec<Diagnosti
             AXIS_LENGTH,
             place.subject.clone(),
             format!("the {name} of {place} has length {length}"),
-            "it is normalised; write it with length 1 to silence this",
+            "it is normalised; write it with length 1 to avoid this warning",
         ));
     }
 }
@@ -202,7 +202,7 @@ fn check_curve(place: &Part, curve: &Curve, findings: &mut Vec<Diagnostic>) {
     }
 }
 
-/// Which components make transforms that stretch or shear.
+/// Which components produce transforms that stretch or shear.
 fn deforming_components(model: &Model) -> Vec<bool> {
     let mut deforming = vec![false; model.components.len()];
     for node in dependency_order(model).unwrap_or_default() {

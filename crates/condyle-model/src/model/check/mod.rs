@@ -1,4 +1,4 @@
-//! What makes a model whole: names, types, places and circles, checked once when it is built.
+//! Validity of a model: names, types, places and cycles, checked once when it is built.
 
 mod component;
 mod order;

@@ -1,4 +1,4 @@
-//! The order in which things are computed, or the circle that forbids one.
+//! The order in which things are computed, or the cycle that prevents one.
 
 use crate::component::Signal;
 use crate::model::{ComponentId, CoordinateId, Model};
@@ -11,12 +11,12 @@ pub(crate) enum Node {
     Component(ComponentId),
 }
 
-/// Coordinates and components in an order in which each comes after what it reads.
+/// Coordinates and components in an order in which each comes after its inputs.
 ///
-/// Order and circles are settled over the whole model, per component and never per bone.
+/// Order and cycles are determined over the whole model, per component and not per segment.
 ///
 /// # Errors
-/// The first node of a circle, and the names along it, the first one repeated at the end.
+/// The first node of a cycle, and the names along it, the first one repeated at the end.
 pub(crate) fn dependency_order(model: &Model) -> Result<Vec<Node>, (Subject, Vec<String>)> {
     let coordinates = model.coordinates.len();
     let number = |source: Signal| match source {
@@ -48,7 +48,7 @@ pub(crate) fn dependency_order(model: &Model) -> Result<Vec<Node>, (Subject, Vec
     let total = coordinates + model.components.len();
     let mut marks = vec![Mark::New; total];
     let mut order = Vec::with_capacity(total);
-    // Depth first with an explicit stack: a node, what it reads, and how much of that is done.
+    // Depth first with an explicit stack: a node, its inputs, and how many of them are done.
     let mut stack: Vec<(usize, Vec<usize>, usize)> = Vec::new();
     for root in 0..total {
         if marks[root] != Mark::New {
