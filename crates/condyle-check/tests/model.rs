@@ -157,7 +157,7 @@ fn followers_that_their_leaders_take_outside() {
     let finding = only(finger(70.0, true), Severity::Warning, "lint/follower-range");
     // Two thirds of 120° are 80°; 70° are left at 105°, sampled every half degree.
     assert!(finding.message.contains("is driven to 80° at `pip` = 120°, 10° past its limit 70°"));
-    assert!(finding.message.ends_with("it leaves at 105.5°"), "{}", finding.message);
+    assert!(finding.message.ends_with("it leaves its range at 105.5°"), "{}", finding.message);
     only(finger(70.0, false), Severity::Note, "lint/follower-range");
     sound(finger(80.0, true));
 }
@@ -390,7 +390,7 @@ fn legs_with_uneven_places_axes_and_defaults() {
         "lint/uneven-places",
     );
     assert!(finding.message.contains("1 of 3 joints"), "{}", finding.message);
-    assert!(finding.message.ends_with("`below_knee_l`, 30 mm"), "{}", finding.message);
+    assert!(finding.message.ends_with("`below_knee_l`, by 30 mm"), "{}", finding.message);
     let finding = only(
         legs(|name, _, axis, _, _| {
             if name == "ankle_l" {

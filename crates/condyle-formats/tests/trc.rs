@@ -122,7 +122,7 @@ fn counts_in_the_header_do_not_rule() {
     let read = with("mm", "A\t\t\tB\t\t\tC", "", "1\t0\t1\t2\t3\t4\t5\t6\t7\t8\t9\n").unwrap();
     assert_eq!(
         read.warnings[0].to_string(),
-        "line 4: NumMarkers is 2, but 3 names are given (the names are right)"
+        "line 4: NumMarkers is 2, but 3 names are given (the names are used)"
     );
 }
 

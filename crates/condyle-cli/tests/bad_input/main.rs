@@ -268,7 +268,7 @@ fn recordings() {
             (
                 "markers.trc",
                 with("\t3\t6\t", "\t3\t7\t"),
-                "4: NumMarkers is 7, but 6 names are given (the names are right)",
+                "4: NumMarkers is 7, but 6 names are given (the names are used)",
             ),
             (
                 "twice.trc",
