@@ -63,3 +63,17 @@ fn a_leg_that_swings_turns_in_its_hip_as_its_sensors_do() {
     eprintln!("{} frames, the hip turns by up to {most:.1}°, RMS {rms:.2}° off", measured.len());
     assert!(most > 30.0 && rms < 0.01, "{most}, {rms}");
 }
+
+#[test]
+fn a_public_file_of_quaternions_is_read_as_it_stands() {
+    let Some(data) = data() else { return };
+    let table = open::table(&data.join("sto/orientation_quats.sto")).unwrap().value;
+    let recording = Orientations::from_table(&table).unwrap().value;
+    assert_eq!((recording.labels.len(), recording.rate), (7, 100.0));
+    assert_eq!(recording.labels[0], "pelvis_imu");
+    // The file's first cell: w, x, y, z of the pelvis.
+    let [w, x, y, z] =
+        [0.5064886386335554, 0.4915562864138964, -0.5355653906346357, 0.4636932052300068];
+    let read = recording.rotation(0, 0).unwrap();
+    assert!(read.angle_to(Quat::from([x, y, z, w])) < 1e-12, "{read:?}");
+}
