@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 /// From which similarity on a name is suggested.
 const SIMILAR: f64 = 0.8;
-/// How many letters of a name are compared: the measure is quadratic in length, and nobody mistypes a
-/// name of two hundred letters.
+/// How many letters of a name are compared: the measure is quadratic in length, and longer
+/// names are not typed by hand.
 const LONGEST: usize = 200;
 
 /// The candidate that a mistyped name most likely meant.

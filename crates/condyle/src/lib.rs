@@ -254,7 +254,7 @@
 //! | [`motion`] | recordings, tables, motions, postures, differences |
 //! | [`tracking`] | recordings to motions; streams; orientations of inertial sensors |
 //! | [`scaling`] | a model as large as a person |
-//! | [`check`] | what is odd in a model, or in a motion of it |
+//! | [`check`] | findings about a model, or about a motion of it |
 //! | [`formats`], [`open`], [`encode`] | bytes to values and back, by path or not |
 //! | [`shipped`], [`scene`] | models that come along, animated scenes |
 //!

@@ -39,7 +39,7 @@ pub struct Tracking {
     pub swaps: Vec<Swap>,
 }
 
-/// Two labels that stand for each other's marker over some frames.
+/// Two labels that are swapped over some frames.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Swap {
     /// The two labels.

@@ -21,11 +21,11 @@ pub struct Summary {
     pub objective_markers: f64,
     /// Mean of P, in m².
     pub objective_posture: f64,
-    /// Frames whose answer is not to be trusted.
+    /// Frames that were not solved.
     pub failed: Vec<FailedFrame>,
 }
 
-/// A frame whose answer is not to be trusted.
+/// A frame that was not solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FailedFrame {
     /// Its number in the recording, from 0.
