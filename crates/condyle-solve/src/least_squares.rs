@@ -35,9 +35,11 @@ pub trait Problem {
 /// The quadratic model of a problem at a point, row-major.
 #[derive(Clone, Debug)]
 pub struct LocalModel {
-    /// The Gauss-Newton approximation of the second derivative of F, n × n; only the lower triangle
-    /// is read.
+    /// An approximation of the second derivative of F, n × n; only the lower triangle is read.
     pub hessian: Vec<f64>,
+    /// Whether the Hessian should have second derivatives of the residuals, which Gauss and Newton leave
+    /// out: asked for near the minimum. A problem that has none ignores it.
+    pub curved: bool,
     /// The gradient of F, n.
     pub gradient: Vec<f64>,
     /// Lower bound of each component of a step, n.
@@ -121,6 +123,8 @@ pub struct Solver {
 
 /// The largest half-width of the trust region, in units of `scale`.
 const WIDEST: f64 = 2.0;
+/// A decrease of less than this share of F means that the minimum is near.
+const NEAR: f64 = 0.1;
 /// The half-width of the trust region below which the iteration stops.
 const NARROWEST: f64 = 1e-9;
 
@@ -131,6 +135,7 @@ impl Solver {
         Self {
             local: LocalModel {
                 hessian: vec![0.0; n * n],
+                curved: false,
                 gradient: vec![0.0; n],
                 lower: vec![0.0; n],
                 upper: vec![0.0; n],
@@ -183,14 +188,19 @@ impl Solver {
         // Whether the current point is new and has to be linearised; a rejected step keeps the
         // model.
         let mut fresh = true;
+        let mut near = false;
         while summary.iterations < options.iterations {
             summary.iterations += 1;
             if fresh {
-                problem.linearise(&mut self.local);
-                self.orthonormalise_equalities();
+                self.linearise(problem, near);
                 fresh = false;
             }
-            let Some(relaxed) = self.propose(trust) else {
+            let mut proposed = self.propose(trust);
+            if self.local.curved && matches!(proposed, Err(Status::NotPositiveDefinite { .. })) {
+                self.linearise(problem, false);
+                proposed = self.propose(trust);
+            }
+            let Ok(relaxed) = proposed else {
                 summary.stop = Stop::NotFinite;
                 break;
             };
@@ -200,6 +210,7 @@ impl Solver {
             let infeasible = sum_violation(&self.equalities, &self.inequalities);
             let small = promised <= options.tolerance * objective + options.floor;
             let last = small && !relaxed && violation <= options.feasibility;
+            near = promised <= NEAR * objective;
             let mut trial = problem.evaluate(
                 &self.step,
                 &mut self.trial_equalities,
@@ -240,6 +251,8 @@ impl Solver {
                 break;
             } else {
                 // A quarter of the rejected step, which may be shorter than the region is wide.
+                fresh = self.local.curved;
+                near = false;
                 trust = 0.25 * trust.min(self.step_size());
                 if trust < NARROWEST {
                     summary.stop = if violation > options.feasibility {
@@ -257,6 +270,12 @@ impl Solver {
             summary.stop = Stop::Infeasible;
         }
         summary
+    }
+
+    fn linearise<P: Problem>(&mut self, problem: &mut P, curved: bool) {
+        self.local.curved = curved;
+        problem.linearise(&mut self.local);
+        self.orthonormalise_equalities();
     }
 
     /// Orthonormalises the equality rows and transforms the right-hand sides -c likewise.
@@ -298,8 +317,8 @@ impl Solver {
     }
 
     /// Solves the quadratic program within the trust region; returns whether its constraints were
-    /// relaxed, or `None` if it failed.
-    fn propose(&mut self, trust: f64) -> Option<bool> {
+    /// relaxed.
+    fn propose(&mut self, trust: f64) -> Result<bool, Status> {
         for i in 0..self.step.len() {
             // The step 0 must stay possible, also where the point violates a bound by rounding.
             let reach = trust * self.scale[i];
@@ -309,18 +328,18 @@ impl Solver {
         let mut ridge = 1e-12;
         loop {
             match self.solve_program() {
-                Ok(relaxed) => return Some(relaxed),
+                Ok(relaxed) => return Ok(relaxed),
                 // A direction of small curvature was lost to rounding: add a multiple of the
                 // identity (Levenberg-Marquardt), from 1e-12 of the largest diagonal entry upwards,
                 // and retry.
-                Err(Status::NotPositiveDefinite { .. }) if ridge < 1e-3 => {
+                Err(Status::NotPositiveDefinite { .. }) if ridge < 1e-3 && !self.local.curved => {
                     let n = self.step.len();
                     let hessian = &mut self.local.hessian;
                     let largest = (0..n).map(|i| hessian[i * n + i]).fold(0.0, f64::max);
                     (0..n).for_each(|i| hessian[i * n + i] += ridge * largest + 1e-30);
                     ridge *= 100.0;
                 }
-                Err(_) => return None,
+                Err(failed) => return Err(failed),
             }
         }
     }

@@ -37,6 +37,8 @@ pub(crate) struct Buffers {
     pub factors: Vec<f64>,
     /// For each group of markers.
     pub moments: Vec<Moments>,
+    /// For each motion of a group of markers.
+    pub levers: Vec<Vec3>,
 }
 
 impl Frame<'_> {

@@ -165,6 +165,7 @@ impl Scratch {
                 total_weight: 0.0,
                 factors: Vec::with_capacity(markers),
                 moments: vec![Moments::ZERO; tracker.markers.groups.len()],
+                levers: Vec::with_capacity(tracker.unknown_len()),
             },
         }
     }

@@ -8,7 +8,7 @@ use super::moments::{Moments, pair};
 use crate::problem::{Buffers, Frame};
 use crate::tracker::FIXED;
 use condyle_math::Vec3;
-use condyle_model::{Model, Pose, Program, SegmentId};
+use condyle_model::{Jacobian, Model, Pose, Program, SegmentId};
 use condyle_solve::least_squares::LocalModel;
 
 /// One marker of the model that should be where the recording has it.
@@ -105,7 +105,7 @@ impl Target for Markers {
     fn linearise(&self, frame: &mut Frame<'_>, local: &mut LocalModel) {
         let n = frame.tracker.unknown_len();
         let scale = 2.0 * frame.marker_scale();
-        let Buffers { jacobian, weights, points, errors, moments, .. } = &mut *frame.buffers;
+        let Buffers { jacobian, weights, points, errors, moments, levers, .. } = &mut *frame.buffers;
         moments.fill(Moments::ZERO);
         for (i, marker) in self.placed.iter().enumerate() {
             if let Some(group) = marker.group
@@ -128,8 +128,41 @@ impl Target for Markers {
                     line[column as usize] += pair(jacobian.twist(other), momentum);
                 }
             }
+            if local.curved {
+                levers.clear();
+                let twists = group.entries.iter().map(|&(_, twist)| jacobian.twist(twist));
+                levers.extend(twists.map(|twist| moments.lever(twist) * scale));
+                add_curvature(group, jacobian, levers, &mut local.hessian, n);
+            }
         }
         self.add_deforming(frame, local, scale);
+    }
+}
+
+/// Adds what the errors contribute to the second derivative: ω of the earlier motion times the lever of
+/// the later one.
+///
+/// Twists are numbered along the chain. Where one coordinate moves several joints of a path, or several
+/// alternate along it, this order is not exact; what is wrong then is the power of the errors along a
+/// commutator of two motions, which vanishes at the minimum where the commutator is itself a motion of the
+/// model. The curvature of functions of a coordinate is left out.
+fn add_curvature(
+    group: &Group,
+    jacobian: &Jacobian,
+    levers: &[Vec3],
+    hessian: &mut [f64],
+    n: usize,
+) {
+    for (position, &(row, twist)) in group.entries.iter().enumerate() {
+        let spin = jacobian.twist(twist).angular;
+        let line = &mut hessian[row as usize * n..(row as usize + 1) * n];
+        let before = &group.entries[..=position];
+        for (&(column, other), &lever) in before.iter().zip(levers) {
+            line[column as usize] += match other < twist {
+                true => jacobian.twist(other).angular.dot(levers[position]),
+                false => spin.dot(lever),
+            };
+        }
     }
 }
 

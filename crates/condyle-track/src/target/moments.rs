@@ -20,7 +20,8 @@ pub(crate) struct Moments {
     /// Σ w p pᵀ: xx, yy, zz, xy, xz, yz.
     second: [f64; 6],
     force: Vec3,
-    torque: Vec3,
+    /// Σ w p eᵀ, by columns.
+    cross: [Vec3; 3],
 }
 
 impl Moments {
@@ -29,7 +30,7 @@ impl Moments {
         first: Vec3::ZERO,
         second: [0.0; 6],
         force: Vec3::ZERO,
-        torque: Vec3::ZERO,
+        cross: [Vec3::ZERO; 3],
     };
 
     /// Adds a marker at `p` whose error is `e`.
@@ -41,8 +42,11 @@ impl Moments {
         for (sum, product) in self.second.iter_mut().zip(products) {
             *sum += weight * product;
         }
-        self.force += e * weight;
-        self.torque += p.cross(e) * weight;
+        let e = e * weight;
+        self.force += e;
+        for (column, e) in self.cross.iter_mut().zip(e.to_array()) {
+            *column += p * e;
+        }
     }
 
     /// `I t`, as a wrench: force and torque.
@@ -62,7 +66,22 @@ impl Moments {
     /// `t · f` for the wrench of the errors.
     #[inline]
     pub(crate) fn power(&self, t: Twist) -> f64 {
-        t.linear.dot(self.force) + t.angular.dot(self.torque)
+        let [x, y, z] = self.cross;
+        // Σ w p × e.
+        let torque = Vec3::new(z.y - y.z, x.z - z.x, y.x - x.y);
+        t.linear.dot(self.force) + t.angular.dot(torque)
+    }
+
+    /// `Σ w v × e` for the velocities v of a twist.
+    ///
+    /// A motion u before it in the chain turns these velocities by ω_u × v, so that the scalar product
+    /// with ω_u is `Σ w e · ∂v/∂u`: what Gauss and Newton leave out of the second derivative.
+    #[inline]
+    pub(crate) fn lever(&self, t: Twist) -> Vec3 {
+        // (ω × p) × e = p (ω·e) - ω (p·e)
+        let [x, y, z] = self.cross;
+        let w = t.angular;
+        x * w.x + y * w.y + z * w.z - w * (x.x + y.y + z.z) + t.linear.cross(self.force)
     }
 }
 
@@ -92,6 +111,9 @@ mod tests {
         };
         let product = sum(&|p, _| t.velocity_at(p).dot(u.velocity_at(p)));
         let power = sum(&|p, e| t.velocity_at(p).dot(e));
+        let lever = markers.iter().map(|&(w, p, e)| t.velocity_at(p).cross(e) * w);
+        let lever = lever.fold(Vec3::ZERO, |sum, x| sum + x);
+        assert!((moments.lever(t) - lever).norm() < 1e-15);
         assert!((pair(t, moments.momentum(u)) - product).abs() < 1e-14);
         assert!((moments.power(t) - power).abs() < 1e-14);
     }
