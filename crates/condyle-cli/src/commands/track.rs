@@ -42,7 +42,7 @@ pub(crate) struct Track {
     /// Hold coordinates to their enforced ranges.
     #[arg(long, value_enum, default_value_t = Limits::On)]
     limits: Limits,
-    /// Detect swapped labels, and reduce the weight of markers that contradict the others.
+    /// Put swapped labels right, and leave markers out where they cannot be.
     #[arg(long)]
     robust: bool,
     /// The report as one JSON document on standard output.
@@ -167,6 +167,10 @@ fn json(trial: &Path, report: &Report, seconds: f64) -> Value {
     let swaps = report.swaps.iter().map(
         |swap| json!({ "labels": swap.labels, "frames": [swap.frames.start, swap.frames.end] }),
     );
+    let left_out = report.left_out.iter().map(|left| {
+        let frames = [left.frames.start, left.frames.end];
+        json!({ "label": left.label, "frames": frames, "fault": left.fault.name() })
+    });
     json!({
         "trial": trial.to_string_lossy(),
         "frames": s.frames,
@@ -182,6 +186,7 @@ fn json(trial: &Path, report: &Report, seconds: f64) -> Value {
         "iterations": report.iterations,
         "mostly_at_limit": report.mostly_at_limit,
         "swapped_labels": swaps.collect::<Vec<_>>(),
+        "left_out": left_out.collect::<Vec<_>>(),
         "markers": markers,
     })
 }
@@ -212,13 +217,10 @@ fn print_summary(
     let rows: Vec<Vec<String>> = worst.iter().take(3).map(row).collect();
     text.push_str(&output::columns(&rows));
     for swap in &report.swaps {
-        text.push_str(&format!(
-            "  labels `{}` and `{}` are swapped in frames {} to {}\n",
-            swap.labels[0],
-            swap.labels[1],
-            swap.frames.start,
-            swap.frames.end - 1
-        ));
+        text.push_str(&format!("  {swap}\n"));
+    }
+    for left in &report.left_out {
+        text.push_str(&format!("  {left}\n"));
     }
     if let [first, ..] = s.failed[..] {
         text.push_str(&format!(

@@ -1,11 +1,11 @@
 //! One recording on its way through a tracker.
 
-use super::{Request, Swap, Tracking};
+use super::{LeftOut, Request, Swap, Tracking};
 use crate::matching::match_markers;
 use condyle_diagnostics::{Diagnostic, Error};
 use condyle_model::Model;
 use condyle_motion::{Motion, Recording};
-use condyle_track::robust::{self, Corrected};
+use condyle_track::robust::{self, Corrected, Repairs};
 use condyle_track::{
     FrameAnswer, MarkerTarget, Recorded, Rules, Scratch, Targets, Tracker, sequence,
 };
@@ -65,7 +65,7 @@ impl<'a> Job<'a> {
         let weight = request.closure_weight;
         targets.closure_weight = weight.is_finite().then_some(weight);
         let (threads, robust) = (request.threads, request.robust);
-        let rules = Rules { limits: request.limits, robust, ..Rules::default() };
+        let rules = Rules { limits: request.limits, ..Rules::default() };
         let tracker = Arc::new(Tracker::new(model, targets, rules));
         Ok(Self { tracker, recording, markers, labels, frames, warnings, threads, robust })
     }
@@ -75,8 +75,8 @@ impl<'a> Job<'a> {
         &self.tracker
     }
 
-    /// Tracks all frames; with a robust request, once more with exchanged labels put right.
-    /// `progress` is called with the number of frames that are done and their total.
+    /// Tracks all frames; with a robust request, faults are found and the frames that they touch tracked
+    /// again. `progress` is called with the number of frames that are done and their total.
     ///
     /// Frames that cannot be solved are marked in their answer.
     pub fn run(&self, mut progress: &mut (dyn FnMut(usize, usize) + Send)) -> Tracking {
@@ -86,20 +86,26 @@ impl<'a> Job<'a> {
             seen.clear();
             seen.extend(self.labels.iter().map(|&label| row.get(label)?.position()));
         };
-        let mut answers = self.pass(&recorded, &mut progress);
-        let mut swaps = vec![];
+        let repairs = if self.robust {
+            Repairs::of_origin(&self.tracker, &recorded, self.frames.len())
+        } else {
+            Repairs::default()
+        };
+        let mut answers = self.pass(&Corrected { recorded: &recorded, repairs: &repairs }, &mut progress);
+        let (mut swaps, mut left_out) = (vec![], vec![]);
         if self.robust {
-            let mut scratch = Scratch::new(&self.tracker);
-            let exchanged =
-                robust::find_exchanged(&self.tracker, &mut scratch, &recorded, &answers);
-            if !exchanged.is_empty() {
-                let corrected = Corrected { recorded: &recorded, exchanged: &exchanged };
-                answers = self.pass(&corrected, &mut progress);
-            }
+            let repairs = self.repaired(&recorded, repairs, &mut answers, &mut progress);
+            let (exchanged, out) = robust::describe(&recorded, &repairs);
             let name = |marker: usize| self.recording.labels[self.labels[marker]].clone();
-            swaps.extend(exchanged.iter().map(|e| Swap {
-                labels: e.markers.map(name),
-                frames: first + e.frames.start..first + e.frames.end,
+            let frames = |range: Range<usize>| first + range.start..first + range.end;
+            swaps.extend(exchanged.into_iter().map(|e| Swap {
+                labels: e.cycle.into_iter().map(name).collect(),
+                frames: frames(e.frames),
+            }));
+            left_out.extend(out.into_iter().map(|l| LeftOut {
+                label: name(l.marker),
+                frames: frames(l.frames),
+                fault: l.fault,
             }));
         }
         let motion = Motion {
@@ -108,7 +114,24 @@ impl<'a> Job<'a> {
         };
         let (markers, labels) = (self.markers.clone(), self.labels.clone());
         let (frames, warnings) = (self.frames.clone(), self.warnings.clone());
-        Tracking { motion, answers, markers, labels, frames, warnings, swaps }
+        Tracking { motion, answers, markers, labels, frames, warnings, swaps, left_out }
+    }
+
+    /// Finds faults and tracks what they touch again.
+    fn repaired(
+        &self,
+        recorded: &dyn Recorded,
+        mut repairs: Repairs,
+        answers: &mut Vec<FrameAnswer>,
+        progress: &mut &mut (dyn FnMut(usize, usize) + Send),
+    ) -> Repairs {
+        let tracker = &*self.tracker;
+        let mut scratch = Scratch::new(tracker);
+        if robust::exchanged_throughout(tracker, &mut scratch, recorded, &mut repairs, answers) {
+            *answers = self.pass(&Corrected { recorded, repairs: &repairs }, progress);
+        }
+        robust::find(tracker, &mut scratch, recorded, &mut repairs, answers);
+        repairs
     }
 
     fn pass(

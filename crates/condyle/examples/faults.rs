@@ -1,0 +1,466 @@
+//! Robust tracking on clean recordings and on generated faults:
+//! `cargo run --release --example faults -- FOLDER [FAULTS]`.
+//!
+//! FOLDER holds recordings and models at the places listed here. The first table compares robust with
+//! plain tracking where nothing is known to be wrong. For the second each fault is written into a
+//! recording whose clean answer is known: measured ones, and ones generated from their motion, where each
+//! marker has a constant offset and noise. Tables are printed in Markdown; `-v` after FAULTS prints a line
+//! for each fault.
+//!
+//! - *found*: marker-frames off by over 50 mm that were put right or left out;
+//! - *accused*: marker-frames that are right, and were left out or given another label;
+//! - *angles*: the largest RMS over the faulty frames of what a coordinate differs from the clean answer,
+//!   over those rotations that stay within 1° where the faulty markers are taken out by hand.
+
+use condyle::formats::Recording;
+use condyle::math::Vec3;
+use condyle::model::Mode;
+use condyle::tracking::{Request, Tracking, track};
+use condyle::{CoordinateId, CoordinateKind, Model, Observed, open};
+use std::collections::HashSet;
+use std::error::Error;
+use std::ops::Range;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Name, model, recording, setup.
+const CLEAN: [(&str, &str, &str, Option<&str>); 9] = [
+    (
+        "synthetic",
+        "ik/core_subject01/subject01_simbody.osim",
+        "ik/core_subject01/subject01_synthetic_marker_data.trc",
+        None,
+    ),
+    (
+        "arm26",
+        "ik/arm26/arm26.osim",
+        "ik/arm26/arm26_elbow_flex.trc",
+        Some("ik/arm26/arm26_Setup_InverseKinematics.xml"),
+    ),
+    (
+        "bone pins",
+        "ik/core_abdbonepin/subject1_abdbonepin.osim",
+        "shoulder/bonepin/abdbonepin.trc",
+        Some("ik/core_abdbonepin/setup_ik_abdbonepin.xml"),
+    ),
+    (
+        "gait10dof",
+        "ik/gait10dof/subject01.osim",
+        "ik/gait10dof/subject01_walk.trc",
+        Some("ik/gait10dof/walk_Setup_IK.xml"),
+    ),
+    ("OpenCap squat", "knee/opencap4/manually_scaled.osim", "knee/opencap4/squats1.trc", None),
+    ("OpenCap walk", "knee/opencap4/manually_scaled.osim", "knee/opencap4/walking1.trc", None),
+    ("OpenCap static", "knee/opencap4/manually_scaled.osim", "knee/opencap4/static1.trc", None),
+    (
+        "Lai 2017 walk",
+        "ik/lai_subject6/LaiArnoldModified2017_scaled.osim",
+        "ik/lai_subject6/walking1.trc",
+        None,
+    ),
+    ("Lenhart walk", "knee/lenhart/lenhart2015.osim", "knee/lenhart/overground_17.trc", None),
+];
+
+/// Those of them that faults are written into.
+const FAULTY: [&str; 3] = ["OpenCap walk", "OpenCap squat", "synthetic"];
+
+struct Trial {
+    name: String,
+    model: Model,
+    recording: Recording,
+    request: Request,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut args = std::env::args().skip(1);
+    let Some(folder) = args.next().map(PathBuf::from) else {
+        return Err("give the folder of the recordings".into());
+    };
+    let faults = args.next().map_or(Ok(200), |n| n.parse())?;
+    let tell = args.next().is_some();
+    let mut trials = vec![];
+    for (name, model, recording, setup) in CLEAN {
+        let path = folder.join(recording);
+        if !path.exists() {
+            println!("{name} is not there: {}", path.display());
+            continue;
+        }
+        trials.push(Trial {
+            name: name.to_owned(),
+            model: open::model(&folder.join(model))?.value,
+            recording: open::recording(&path)?.value,
+            request: match setup {
+                Some(setup) => Request::from_setup(&open::setup(&folder.join(setup))?.value),
+                None => Request::default(),
+            },
+        });
+    }
+    clean(&trials)?;
+    let mut measured: Vec<Trial> =
+        trials.into_iter().filter(|trial| FAULTY.contains(&trial.name.as_str())).collect();
+    let generated: Vec<Trial> =
+        measured.iter().map(|trial| generate(trial)).collect::<Result<_, _>>()?;
+    measured.extend(generated);
+    with_faults(&measured, faults, tell)
+}
+
+fn run(trial: &Trial, recording: &Recording, robust: bool) -> Result<(Tracking, f64), Box<dyn Error>> {
+    let request = Request { robust, threads: Some(1), ..trial.request.clone() };
+    let start = Instant::now();
+    let tracking = track(&trial.model, recording, &request, &mut |_, _| {})?;
+    Ok((tracking, start.elapsed().as_secs_f64()))
+}
+
+fn clean(trials: &[Trial]) -> Result<(), Box<dyn Error>> {
+    println!("| recording | frames | RMS plain | robust | largest RMS of a rotation | RMS of translations | put right | left out | speed |");
+    println!("| --- | ---: | ---: | ---: | --- | ---: | --- | ---: | ---: |");
+    for trial in trials {
+        let (plain, plain_time) = run(trial, &trial.recording, false)?;
+        let (robust, robust_time) = run(trial, &trial.recording, true)?;
+        let frames = 0..plain.answers.len();
+        let turned = rotations(&trial.model)
+            .map(|id| (off(&trial.model, &plain, &robust, id, frames.clone()), id))
+            .max_by(|a, b| a.0.total_cmp(&b.0));
+        let (turn, id) = turned.ok_or("no rotation")?;
+        let ids = trial.model.coordinate_ids();
+        let moved = ids
+            .filter(|&id| trial.model.coordinate(id).kind == CoordinateKind::Translation)
+            .map(|id| off(&trial.model, &plain, &robust, id, frames.clone()))
+            .fold(0.0, f64::max);
+        let out: usize = robust.left_out.iter().map(|l| l.frames.len()).sum();
+        println!(
+            "| {} | {} | {:.2} mm | {:.2} mm | {:.2}° ({}) | {:.1} mm | {} | {} | {:.0} % |",
+            trial.name,
+            plain.answers.len(),
+            1e3 * plain.summary().rms,
+            1e3 * robust.summary().rms,
+            turn.to_degrees(),
+            trial.model.coordinate_key(id),
+            1e3 * moved,
+            robust.swaps.len(),
+            out,
+            100.0 * plain_time / robust_time
+        );
+        for swap in &robust.swaps {
+            eprintln!("{}: {swap}", trial.name);
+        }
+        for left in &robust.left_out {
+            eprintln!("{}: {left}", trial.name);
+        }
+    }
+    Ok(())
+}
+
+fn rotations(model: &Model) -> impl Iterator<Item = CoordinateId> + '_ {
+    let rotates = |id: &CoordinateId| model.coordinate(*id).kind == CoordinateKind::Rotation;
+    model.coordinate_ids().filter(rotates)
+}
+
+/// RMS over frames of what a coordinate differs in two trackings.
+fn off(
+    model: &Model,
+    a: &Tracking,
+    b: &Tracking,
+    id: CoordinateId,
+    frames: impl ExactSizeIterator<Item = usize>,
+) -> f64 {
+    let n = frames.len().max(1) as f64;
+    let value = |t: &Tracking, frame: usize| model.value(&t.motion.frames[frame], id);
+    let turns = model.coordinate(id).kind == CoordinateKind::Rotation;
+    let square = |frame| {
+        let off: f64 = value(a, frame) - value(b, frame);
+        let whole = if turns { std::f64::consts::TAU * (off / std::f64::consts::TAU).round() } else { 0.0 };
+        (off - whole).powi(2)
+    };
+    (frames.map(square).sum::<f64>() / n).sqrt()
+}
+
+/// A recording of the same motion by a model whose markers lie beside their places by a constant offset
+/// of 10 mm RMS an axis, with noise of 2 mm.
+fn generate(trial: &Trial) -> Result<Trial, Box<dyn Error>> {
+    let (plain, _) = run(trial, &trial.recording, false)?;
+    let mut dice = Dice(17);
+    let markers = trial.model.markers().iter();
+    let points: Vec<_> = markers.map(|m| Some(m.point + dice.vector() * 0.010)).collect();
+    let placed = trial.model.with_markers_at(&points);
+    let mut recording = plain.motion.virtual_markers(&placed, Mode::Open)?;
+    recording.rate = trial.recording.rate;
+    for position in recording.positions.iter_mut().filter_map(Observed::position_mut) {
+        let noise = dice.vector() * 0.002;
+        position.iter_mut().zip(noise.to_array()).for_each(|(x, n)| *x += n);
+    }
+    let (name, request) = (format!("{}, generated", trial.name), trial.request.clone());
+    Ok(Trial { name, model: trial.model.clone(), recording, request })
+}
+
+/// A fault written into a recording.
+struct Fault {
+    kind: &'static str,
+    labels: Vec<usize>,
+    frames: Range<usize>,
+}
+
+const KINDS: [&str; 8] =
+    ["1 pair", "2 pairs", "3 pairs", "4 pairs", "three-cycle", "ghost", "frozen", "at 0 0 0"];
+
+impl Fault {
+    /// From one frame to half of the trial, anywhere in it; lengths are spread over their logarithm.
+    fn cast(kind: &'static str, used: &[usize], frames: usize, dice: &mut Dice) -> Self {
+        let length = ((frames as f64 / 2.0).powf(dice.even()) as usize).max(1);
+        let start = dice.below(frames - length + 1);
+        let count = match kind {
+            "1 pair" => 2,
+            "2 pairs" => 4,
+            "3 pairs" => 6,
+            "4 pairs" => 8,
+            "three-cycle" => 3,
+            _ => 1,
+        };
+        let mut labels = vec![];
+        while labels.len() < count.min(used.len() / 2 * 2) {
+            let label = used[dice.below(used.len())];
+            if !labels.contains(&label) {
+                labels.push(label);
+            }
+        }
+        Self { kind, labels, frames: start..start + length }
+    }
+
+    fn write(&self, recording: &mut Recording, dice: &mut Dice) {
+        let width = recording.labels.len();
+        let away = dice.vector();
+        let away = away * ((0.06 + 0.44 * dice.even()) / away.norm());
+        let frozen = recording.positions[self.frames.start * width + self.labels[0]];
+        for frame in self.frames.clone() {
+            let row = &mut recording.positions[frame * width..(frame + 1) * width];
+            match self.kind {
+                "three-cycle" => {
+                    row.swap(self.labels[0], self.labels[1]);
+                    row.swap(self.labels[1], self.labels[2]);
+                }
+                "ghost" => {
+                    let place = row[self.labels[0]].position();
+                    let moved = place.map(|p| (Vec3::from(p) + away).to_array());
+                    row[self.labels[0]] = Observed::from(moved);
+                }
+                "frozen" => row[self.labels[0]] = frozen,
+                "at 0 0 0" => row[self.labels[0]] = Observed::from([0.0; 3]),
+                _ => self.labels.chunks_exact(2).for_each(|pair| row.swap(pair[0], pair[1])),
+            }
+        }
+    }
+}
+
+/// Counts over the faults of one kind.
+#[derive(Default, Clone)]
+struct Tally {
+    faults: usize,
+    off: usize,
+    found: usize,
+    right: usize,
+    accused: usize,
+    named: usize,
+    judged: usize,
+    within: usize,
+    plain_within: usize,
+    worse: usize,
+    time: [f64; 2],
+}
+
+fn with_faults(trials: &[Trial], faults: usize, tell: bool) -> Result<(), Box<dyn Error>> {
+    let mut dice = Dice(2024);
+    let mut tallies = vec![Tally::default(); KINDS.len()];
+    let mut references = vec![];
+    for trial in trials {
+        references.push(run(trial, &trial.recording, false)?.0);
+    }
+    for number in 0..faults {
+        let kind = number % KINDS.len();
+        let which = number / KINDS.len() % trials.len();
+        let (trial, clean) = (&trials[which], &references[which]);
+        let used = &clean.labels;
+        let fault = Fault::cast(KINDS[kind], used, trial.recording.frames(), &mut dice);
+        let mut recording = trial.recording.clone();
+        fault.write(&mut recording, &mut dice);
+        one(trial, clean, &recording, &fault, &mut tallies[kind], tell.then_some(number))?;
+    }
+    println!();
+    println!("| fault | faults | marker-frames over 50 mm off: found | named as it is | accused | angles within 2° | plain | worse than plain | speed |");
+    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
+    let mut all = Tally::default();
+    for (kind, tally) in KINDS.iter().zip(&tallies) {
+        print_row(kind, tally);
+        all.faults += tally.faults;
+        all.off += tally.off;
+        all.found += tally.found;
+        all.right += tally.right;
+        all.accused += tally.accused;
+        all.named += tally.named;
+        all.judged += tally.judged;
+        all.within += tally.within;
+        all.plain_within += tally.plain_within;
+        all.worse += tally.worse;
+        (0..2).for_each(|i| all.time[i] += tally.time[i]);
+    }
+    print_row("all", &all);
+    Ok(())
+}
+
+fn print_row(kind: &str, t: &Tally) {
+    let share = |n: usize, of: usize| 100.0 * n as f64 / of.max(1) as f64;
+    println!(
+        "| {kind} | {} | {:.1} % of {} | {} | {:.3} % | {} of {} | {} | {} | {:.0} % |",
+        t.faults,
+        share(t.found, t.off),
+        t.off,
+        t.named,
+        share(t.accused, t.right),
+        t.within,
+        t.judged,
+        t.plain_within,
+        t.worse,
+        100.0 * t.time[0] / t.time[1]
+    );
+}
+
+fn one(
+    trial: &Trial,
+    clean: &Tracking,
+    recording: &Recording,
+    fault: &Fault,
+    tally: &mut Tally,
+    tell: Option<usize>,
+) -> Result<(), Box<dyn Error>> {
+    let (plain, plain_time) = run(trial, recording, false)?;
+    let (robust, robust_time) = run(trial, recording, true)?;
+    let width = recording.labels.len();
+    let place = |name: &String| recording.labels.iter().position(|label| label == name);
+    // Label and frame of everything that was put right or left out.
+    let mut touched = HashSet::new();
+    for swap in &robust.swaps {
+        let labels = swap.labels.iter().filter_map(place);
+        touched.extend(labels.flat_map(|l| swap.frames.clone().map(move |f| (f, l))));
+    }
+    for left in &robust.left_out {
+        let label = place(&left.label).ok_or("unknown label")?;
+        touched.extend(left.frames.clone().map(|f| (f, label)));
+    }
+    let (mut off_frames, mut found, mut all_off) = (HashSet::new(), 0, 0);
+    let mut accused = 0;
+    for frame in clean.frames.clone() {
+        for &label in &clean.labels {
+            let at = frame * width + label;
+            let now = recording.positions[at].position();
+            let Some(now) = now else { continue };
+            let was = trial.recording.positions[at].position();
+            let away = was.map_or(f64::INFINITY, |was| (Vec3::from(was) - Vec3::from(now)).norm());
+            tally.right += 1;
+            if away > 0.050 {
+                off_frames.insert(frame);
+                all_off += 1;
+                found += usize::from(touched.contains(&(frame, label)));
+            } else if away == 0.0 {
+                accused += usize::from(touched.contains(&(frame, label)));
+            }
+        }
+    }
+    tally.faults += 1;
+    tally.off += all_off;
+    tally.found += found;
+    tally.accused += accused;
+    (tally.time[0], tally.time[1]) = (tally.time[0] + plain_time, tally.time[1] + robust_time);
+    let named = is_named(trial, fault, &robust);
+    tally.named += usize::from(named);
+    let mut off_frames: Vec<usize> = off_frames.into_iter().collect();
+    off_frames.sort_unstable();
+    if off_frames.is_empty() {
+        return Ok(());
+    }
+    let mut without = recording.clone();
+    for &frame in &off_frames {
+        fault.labels.iter().for_each(|l| without.positions[frame * width + l] = Observed::MISSING);
+    }
+    let (without, _) = run(trial, &without, false)?;
+    let first = clean.frames.start;
+    let most = |a: &Tracking, id| {
+        let frames = off_frames.iter().map(|f| f - first);
+        let off = frames.map(|f| off(&trial.model, a, clean, id, f..f + 1).to_degrees());
+        off.fold(0.0, f64::max)
+    };
+    let determined = rotations(&trial.model).filter(|&id| most(&without, id) < 1.0);
+    let worst = determined.map(|id| (most(&robust, id), most(&plain, id), id));
+    let worst: Vec<_> = worst.collect();
+    let robust_off = worst.iter().map(|w| w.0).fold(0.0, f64::max);
+    let plain_off = worst.iter().map(|w| w.1).fold(0.0, f64::max);
+    tally.judged += 1;
+    tally.within += usize::from(robust_off <= 2.0);
+    tally.plain_within += usize::from(plain_off <= 2.0);
+    let is_worse = robust_off > plain_off + 0.2;
+    tally.worse += usize::from(is_worse);
+    if let Some(number) = tell {
+        let names: Vec<&str> = fault.labels.iter().map(|&l| recording.labels[l].as_str()).collect();
+        let (frames, kind) = (&fault.frames, fault.kind);
+        println!(
+            "{number} {}: {kind} {names:?} {frames:?}: found {found}/{all_off} accused {accused} named {named}, {robust_off:.2}° plain {plain_off:.2}°{}",
+            trial.name,
+            if is_worse { " WORSE" } else { "" }
+        );
+        if robust_off > 2.0 || accused > 0 || found < all_off {
+            robust.swaps.iter().take(6).for_each(|swap| println!("    {swap}"));
+            robust.left_out.iter().take(6).for_each(|left| println!("    {left}"));
+        }
+    }
+    Ok(())
+}
+
+/// Whether what was found says what the fault is, in nine tenths of its frames.
+fn is_named(trial: &Trial, fault: &Fault, robust: &Tracking) -> bool {
+    let name = |&label: &usize| trial.recording.labels[label].clone();
+    let names: Vec<String> = fault.labels.iter().map(name).collect();
+    let cycles: Vec<Vec<String>> = match fault.kind {
+        "three-cycle" => vec![names],
+        "ghost" | "frozen" | "at 0 0 0" => {
+            let covered = robust.left_out.iter().filter(|l| l.label == names[0]);
+            return enough(fault, covered.map(|l| &l.frames));
+        }
+        _ => names.chunks_exact(2).map(<[String]>::to_vec).collect(),
+    };
+    cycles.iter().all(|cycle| {
+        let same = |labels: &[String]| {
+            labels.len() == cycle.len() && cycle.iter().all(|label| labels.contains(label))
+        };
+        let covered = robust.swaps.iter().filter(|swap| same(&swap.labels));
+        enough(fault, covered.map(|swap| &swap.frames))
+    })
+}
+
+fn enough<'a>(fault: &Fault, found: impl Iterator<Item = &'a Range<usize>>) -> bool {
+    let both = |r: &Range<usize>| {
+        r.end.min(fault.frames.end).saturating_sub(r.start.max(fault.frames.start))
+    };
+    10 * found.map(both).sum::<usize>() >= 9 * fault.frames.len()
+}
+
+/// SplitMix64 (Steele, Lea & Flood 2014): the same numbers everywhere.
+struct Dice(u64);
+
+impl Dice {
+    /// Uniform in [0, 1).
+    fn even(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        (self.even() * n as f64) as usize
+    }
+
+    /// Three numbers with mean 0 and deviation 1: sums of twelve.
+    fn vector(&mut self) -> Vec3 {
+        let mut normal = || (0..12).map(|_| self.even()).sum::<f64>() - 6.0;
+        Vec3::new(normal(), normal(), normal())
+    }
+}
