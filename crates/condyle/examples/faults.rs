@@ -15,7 +15,7 @@
 use condyle::formats::Recording;
 use condyle::math::Vec3;
 use condyle::model::Mode;
-use condyle::tracking::{Request, Tracking, track};
+use condyle::tracking::{Job, Request, Tracking};
 use condyle::{CoordinateId, CoordinateKind, Model, Observed, open};
 use std::collections::HashSet;
 use std::error::Error;
@@ -106,17 +106,27 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn run(trial: &Trial, recording: &Recording, robust: bool) -> Result<(Tracking, f64), Box<dyn Error>> {
     let request = Request { robust, threads: Some(1), ..trial.request.clone() };
+    let job = Job::new(trial.model.clone(), recording, &request)?;
     let start = Instant::now();
-    let tracking = track(&trial.model, recording, &request, &mut |_, _| {})?;
+    let tracking = job.run(&mut |_, _| {});
     Ok((tracking, start.elapsed().as_secs_f64()))
+}
+
+/// The best of five times.
+fn timed(trial: &Trial, robust: bool) -> Result<(Tracking, f64), Box<dyn Error>> {
+    let (tracking, mut least) = run(trial, &trial.recording, robust)?;
+    for _ in 0..4 {
+        least = least.min(run(trial, &trial.recording, robust)?.1);
+    }
+    Ok((tracking, least))
 }
 
 fn clean(trials: &[Trial]) -> Result<(), Box<dyn Error>> {
     println!("| recording | frames | RMS plain | robust | largest RMS of a rotation | RMS of translations | put right | left out | speed |");
     println!("| --- | ---: | ---: | ---: | --- | ---: | --- | ---: | ---: |");
     for trial in trials {
-        let (plain, plain_time) = run(trial, &trial.recording, false)?;
-        let (robust, robust_time) = run(trial, &trial.recording, true)?;
+        let (plain, plain_time) = timed(trial, false)?;
+        let (robust, robust_time) = timed(trial, true)?;
         let frames = 0..plain.answers.len();
         let turned = rotations(&trial.model)
             .map(|id| (off(&trial.model, &plain, &robust, id, frames.clone()), id))
@@ -272,17 +282,20 @@ fn with_faults(trials: &[Trial], faults: usize, tell: bool) -> Result<(), Box<dy
     let mut tallies = vec![Tally::default(); KINDS.len()];
     let mut references = vec![];
     for trial in trials {
-        references.push(run(trial, &trial.recording, false)?.0);
+        let clean = run(trial, &trial.recording, false)?.0;
+        // What is found where nothing was written in is the recording's own.
+        let own = touched(&trial.recording, &run(trial, &trial.recording, true)?.0);
+        references.push((clean, own));
     }
     for number in 0..faults {
         let kind = number % KINDS.len();
         let which = number / KINDS.len() % trials.len();
-        let (trial, clean) = (&trials[which], &references[which]);
-        let used = &clean.labels;
+        let (trial, reference) = (&trials[which], &references[which]);
+        let used = &reference.0.labels;
         let fault = Fault::cast(KINDS[kind], used, trial.recording.frames(), &mut dice);
         let mut recording = trial.recording.clone();
         fault.write(&mut recording, &mut dice);
-        one(trial, clean, &recording, &fault, &mut tallies[kind], tell.then_some(number))?;
+        one(trial, reference, &recording, &fault, &mut tallies[kind], tell.then_some(number))?;
     }
     println!();
     println!("| fault | faults | marker-frames over 50 mm off: found | named as it is | accused | angles within 2° | plain | worse than plain | speed |");
@@ -323,9 +336,18 @@ fn print_row(kind: &str, t: &Tally) {
     );
 }
 
+/// Frame and label of everything that was put right or left out.
+fn touched(recording: &Recording, robust: &Tracking) -> HashSet<(usize, usize)> {
+    let place = |name: &String| recording.labels.iter().position(|label| label == name);
+    let swaps = robust.swaps.iter().flat_map(|s| s.labels.iter().map(|l| (l, &s.frames)));
+    let left_out = robust.left_out.iter().map(|l| (&l.label, &l.frames));
+    let all = swaps.chain(left_out).filter_map(|(label, frames)| Some((place(label)?, frames)));
+    all.flat_map(|(label, frames)| frames.clone().map(move |frame| (frame, label))).collect()
+}
+
 fn one(
     trial: &Trial,
-    clean: &Tracking,
+    (clean, own): &(Tracking, HashSet<(usize, usize)>),
     recording: &Recording,
     fault: &Fault,
     tally: &mut Tally,
@@ -334,17 +356,7 @@ fn one(
     let (plain, plain_time) = run(trial, recording, false)?;
     let (robust, robust_time) = run(trial, recording, true)?;
     let width = recording.labels.len();
-    let place = |name: &String| recording.labels.iter().position(|label| label == name);
-    // Label and frame of everything that was put right or left out.
-    let mut touched = HashSet::new();
-    for swap in &robust.swaps {
-        let labels = swap.labels.iter().filter_map(place);
-        touched.extend(labels.flat_map(|l| swap.frames.clone().map(move |f| (f, l))));
-    }
-    for left in &robust.left_out {
-        let label = place(&left.label).ok_or("unknown label")?;
-        touched.extend(left.frames.clone().map(|f| (f, label)));
-    }
+    let touched = touched(recording, &robust);
     let (mut off_frames, mut found, mut all_off) = (HashSet::new(), 0, 0);
     let mut accused = 0;
     for frame in clean.frames.clone() {
@@ -360,7 +372,8 @@ fn one(
                 all_off += 1;
                 found += usize::from(touched.contains(&(frame, label)));
             } else if away == 0.0 {
-                accused += usize::from(touched.contains(&(frame, label)));
+                let at = (frame, label);
+                accused += usize::from(touched.contains(&at) && !own.contains(&at));
             }
         }
     }
@@ -369,13 +382,13 @@ fn one(
     tally.found += found;
     tally.accused += accused;
     (tally.time[0], tally.time[1]) = (tally.time[0] + plain_time, tally.time[1] + robust_time);
-    let named = is_named(trial, fault, &robust);
-    tally.named += usize::from(named);
     let mut off_frames: Vec<usize> = off_frames.into_iter().collect();
     off_frames.sort_unstable();
     if off_frames.is_empty() {
         return Ok(());
     }
+    let named = is_named(trial, fault, &off_frames, &robust);
+    tally.named += usize::from(named);
     let mut without = recording.clone();
     for &frame in &off_frames {
         fault.labels.iter().for_each(|l| without.positions[frame * width + l] = Observed::MISSING);
@@ -413,15 +426,15 @@ fn one(
     Ok(())
 }
 
-/// Whether what was found says what the fault is, in nine tenths of its frames.
-fn is_named(trial: &Trial, fault: &Fault, robust: &Tracking) -> bool {
+/// Whether what was found says what the fault is, in nine tenths of the frames in which labels are off.
+fn is_named(trial: &Trial, fault: &Fault, off: &[usize], robust: &Tracking) -> bool {
     let name = |&label: &usize| trial.recording.labels[label].clone();
     let names: Vec<String> = fault.labels.iter().map(name).collect();
     let cycles: Vec<Vec<String>> = match fault.kind {
         "three-cycle" => vec![names],
         "ghost" | "frozen" | "at 0 0 0" => {
             let covered = robust.left_out.iter().filter(|l| l.label == names[0]);
-            return enough(fault, covered.map(|l| &l.frames));
+            return enough(off, covered.map(|l| &l.frames));
         }
         _ => names.chunks_exact(2).map(<[String]>::to_vec).collect(),
     };
@@ -430,15 +443,14 @@ fn is_named(trial: &Trial, fault: &Fault, robust: &Tracking) -> bool {
             labels.len() == cycle.len() && cycle.iter().all(|label| labels.contains(label))
         };
         let covered = robust.swaps.iter().filter(|swap| same(&swap.labels));
-        enough(fault, covered.map(|swap| &swap.frames))
+        enough(off, covered.map(|swap| &swap.frames))
     })
 }
 
-fn enough<'a>(fault: &Fault, found: impl Iterator<Item = &'a Range<usize>>) -> bool {
-    let both = |r: &Range<usize>| {
-        r.end.min(fault.frames.end).saturating_sub(r.start.max(fault.frames.start))
-    };
-    10 * found.map(both).sum::<usize>() >= 9 * fault.frames.len()
+fn enough<'a>(off: &[usize], found: impl Iterator<Item = &'a Range<usize>>) -> bool {
+    let found: Vec<_> = found.collect();
+    let covered = off.iter().filter(|frame| found.iter().any(|range| range.contains(frame)));
+    10 * covered.count() >= 9 * off.len()
 }
 
 /// SplitMix64 (Steele, Lea & Flood 2014): the same numbers everywhere.

@@ -65,7 +65,7 @@ pub fn exchanged_throughout(
         return false;
     }
     let mut exchanged = repairs.clone();
-    exchanged.exchange(&labels, frames);
+    exchanged.exchange(&labels);
     let (mut before, mut after) = (0.0, 0.0);
     for frame in (0..frames).step_by(frames.div_ceil(SOLVED).max(1)) {
         Corrected { recorded, repairs: &exchanged }.positions(frame, &mut seen);

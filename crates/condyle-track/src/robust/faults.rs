@@ -54,13 +54,18 @@ const STILL: f64 = 0.001;
 const FEWEST_STILL: usize = 4;
 
 /// The faults that repairs of a recording put right or leave out.
-pub fn describe(recorded: &dyn Recorded, repairs: &Repairs) -> (Vec<Exchanged>, Vec<LeftOut>) {
+pub fn describe(
+    recorded: &dyn Recorded,
+    repairs: &Repairs,
+    frames: usize,
+) -> (Vec<Exchanged>, Vec<LeftOut>) {
     let mut seen = vec![];
     let mut cycles: BTreeMap<Vec<usize>, Vec<usize>> = BTreeMap::new();
     let mut out: BTreeMap<usize, Vec<(usize, [f64; 3])>> = BTreeMap::new();
-    for (&frame, source) in &repairs.frames {
+    for frame in 0..frames {
         recorded.positions(frame, &mut seen);
-        for cycle in cycles_of(source) {
+        let Some(source) = repairs.source(frame, seen.len()) else { continue };
+        for cycle in cycles_of(&source) {
             cycles.entry(cycle).or_default().push(frame);
         }
         for (label, seen) in seen.iter().enumerate() {

@@ -37,50 +37,58 @@ const ROUNDS: usize = 3;
 /// What is changed in a recording.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Repairs {
+    /// The labels that each frame has at 0 0 0.
+    lost: BTreeMap<usize, Vec<usize>>,
+    /// For each marker the label that it has throughout; empty where each has its own.
+    throughout: Vec<usize>,
+    /// The frames in which that is not so.
     frames: BTreeMap<usize, Source>,
 }
 
 impl Repairs {
-    /// Where the markers of a frame come from; `None` if each has its own label.
-    pub fn source(&self, frame: usize) -> Option<&Source> {
-        self.frames.get(&frame)
-    }
-
-    /// The frames in which something is changed.
-    pub fn frames(&self) -> impl Iterator<Item = usize> + '_ {
-        self.frames.keys().copied()
-    }
-
-    /// Whether nothing is changed.
-    pub fn is_empty(&self) -> bool {
-        self.frames.is_empty()
-    }
-
-    /// Markers recorded at exactly 0 0 0, which is how some programs write a marker that they lost.
+    /// Leaves out markers recorded at exactly 0 0 0, which is how some programs write one that they
+    /// lost.
     pub fn of_origin(tracker: &Tracker, recorded: &dyn Recorded, frames: usize) -> Self {
         let (mut repairs, mut seen) = (Self::default(), vec![]);
-        let count = tracker.markers.placed.len();
         for frame in 0..frames {
             recorded.positions(frame, &mut seen);
-            let lost = |m: usize| seen.get(m) == Some(&Some([0.0; 3])) && !tracker.markers.placed[m].of_world();
-            if (0..count).any(lost) {
-                let source = (0..count).map(|m| (!lost(m)).then_some(m)).collect();
-                repairs.frames.insert(frame, source);
+            let labels = seen.iter().zip(&tracker.markers.placed).enumerate();
+            let lost = labels.filter(|(_, (seen, placed))| **seen == Some([0.0; 3]) && !placed.of_world());
+            let lost: Vec<usize> = lost.map(|(label, _)| label).collect();
+            if !lost.is_empty() {
+                repairs.lost.insert(frame, lost);
             }
         }
         repairs
     }
 
+    /// Whether nothing is changed.
+    pub fn is_empty(&self) -> bool {
+        self.lost.is_empty() && self.throughout.is_empty() && self.frames.is_empty()
+    }
+
+    /// The labels of `count` markers in a frame; `None` if each has its own.
+    fn source(&self, frame: usize, count: usize) -> Option<Source> {
+        let lost = self.lost.get(&frame);
+        if lost.is_none() && self.throughout.is_empty() && !self.frames.contains_key(&frame) {
+            return None;
+        }
+        let throughout = |label: usize| self.throughout.get(label).map_or(label, |&label| label);
+        let mut source: Source = match self.frames.get(&frame) {
+            Some(source) => source.iter().map(|label| label.map(throughout)).collect(),
+            None => (0..count).map(|marker| Some(throughout(marker))).collect(),
+        };
+        for label in source.iter_mut().filter(|l| l.is_some_and(|l| lost.is_some_and(|lost| lost.contains(&l)))) {
+            *label = None;
+        }
+        Some(source)
+    }
+
     /// Gives the markers other labels in all frames: marker m that of `labels[m]`, before what is changed
     /// already.
-    fn exchange(&mut self, labels: &[usize], frames: usize) {
-        for frame in 0..frames {
-            let source = match self.frames.get(&frame) {
-                Some(source) => labels.iter().map(|&label| source[label]).collect(),
-                None => labels.iter().copied().map(Some).collect(),
-            };
-            self.frames.insert(frame, source);
-        }
+    fn exchange(&mut self, labels: &[usize]) {
+        let before = |label: usize| self.throughout.get(label).map_or(label, |&label| label);
+        self.throughout = labels.iter().map(|&label| before(label)).collect();
     }
 }
 
@@ -95,7 +103,7 @@ pub struct Corrected<'a> {
 impl Recorded for Corrected<'_> {
     fn positions(&self, frame: usize, seen: &mut Vec<Option<[f64; 3]>>) {
         self.recorded.positions(frame, seen);
-        if let Some(source) = self.repairs.source(frame) {
+        if let Some(source) = self.repairs.source(frame, seen.len()) {
             let row = std::mem::take(seen);
             seen.extend(source.iter().map(|label| row.get((*label)?).copied().flatten()));
         }
@@ -111,21 +119,21 @@ pub fn find(
     repairs: &mut Repairs,
     answers: &mut Vec<FrameAnswer>,
 ) {
-    let mut trial = Trial::new(tracker, recorded, repairs, answers);
+    repairs.frames.clear();
+    let mut trial = Trial::new(tracker, &Corrected { recorded, repairs }, answers);
     trial.measure(scratch, None);
     // Faults make a frame fit worse, so offsets are first taken where it fits well.
     let mut frames: Vec<usize> = (0..trial.frames).collect();
     frames.sort_by(|&a, &b| trial.answers[a].minimised().total_cmp(&trial.answers[b].minimised()));
     frames.truncate(trial.frames.div_ceil(2).max(FEW.min(trial.frames)));
-    for round in 0..ROUNDS {
+    for _ in 0..ROUNDS {
         let offsets = Offsets::of(&trial, &frames);
         trial.measure(scratch, Some(&offsets));
-        if !search::search(&mut trial, scratch, &offsets) && round > 0 {
+        if !search::search(&mut trial, scratch, &offsets) {
             break;
         }
         frames = (0..trial.frames).collect();
     }
-    repairs.frames.clear();
     for (frame, source) in trial.sources.into_iter().enumerate() {
         if let Some(source) = source {
             repairs.frames.insert(frame, source);

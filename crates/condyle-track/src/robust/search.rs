@@ -30,6 +30,8 @@ const LEAST_GAIN: f64 = 1e-6;
 const ROUNDS: usize = 4;
 /// How often the trial is gone through in both directions.
 const PASSES: usize = 3;
+/// Of a run of frames that stray alike and were not changed, each so many-th is tried.
+const STRIDE: usize = 8;
 
 /// Changes labels and answers of a trial where that clearly fits better; whether any was changed.
 pub(super) fn search(trial: &mut Trial<'_>, scratch: &mut Scratch, offsets: &Offsets) -> bool {
@@ -41,6 +43,7 @@ pub(super) fn search(trial: &mut Trial<'_>, scratch: &mut Scratch, offsets: &Off
     for pass in 0..2 * PASSES {
         let backwards = pass % 2 == 1;
         let mut changed = false;
+        candidate.rejected = 0;
         for step in 0..trial.frames {
             let frame = if backwards { trial.frames - 1 - step } else { step };
             let before = |by: usize| {
@@ -53,12 +56,17 @@ pub(super) fn search(trial: &mut Trial<'_>, scratch: &mut Scratch, offsets: &Off
                 continue;
             }
             tried[usize::from(backwards)][frame] = around;
-            if candidate.try_frame(trial, scratch, offsets, frame, near) {
+            let t0 = std::time::Instant::now();
+            let ok = candidate.try_frame(trial, scratch, offsets, frame, near);
+            candidate.time += t0.elapsed().as_secs_f64();
+            if ok {
                 changes[frame] += 1;
                 changed = true;
             }
         }
         any |= changed;
+        eprintln!("DBG pass {pass} tries {} solves {} changed {} time {:.3}", candidate.tries, candidate.solves, changes.iter().sum::<u32>(), candidate.time);
+        candidate.tries=0; candidate.solves=0; candidate.time=0.0;
         if pass > 0 && !changed {
             break;
         }
@@ -69,8 +77,12 @@ pub(super) fn search(trial: &mut Trial<'_>, scratch: &mut Scratch, offsets: &Off
 /// The buffers of one frame that is tried.
 #[derive(Default)]
 struct Candidate {
+    /// How many labels strayed in the frame before, and how many frames in a row were rejected.
+    straying: usize,
+    rejected: usize,
     expected: Vec<Vec3>,
     seen: Vec<Option<[f64; 3]>>,
+    tries: usize, solves: usize, time: f64,
 }
 
 impl Candidate {
@@ -98,54 +110,66 @@ impl Candidate {
             _ => self.expected.extend_from_slice(trial.places(frame)),
         }
         let strays = |places: &[Vec3], share: f64| {
-            (0..trial.count).any(|marker| {
-                let label = trial.label(frame, marker);
-                let off = label.and_then(|label| distance(trial.row(frame)[label], places[marker]));
-                off.is_some_and(|off| off > share * offsets.gates[marker])
-            })
+            let away = |marker: &usize| {
+                let label = trial.label(frame, *marker);
+                let off = label.and_then(|label| distance(trial.row(frame)[label], places[*marker]));
+                off.is_some_and(|off| off > share * offsets.gates[*marker])
+            };
+            (0..trial.count).filter(away).count()
         };
         let own = trial.sources[frame].is_none();
-        let from_here = strays(trial.places(frame), 1.0);
-        if own && !from_here && !strays(&self.expected, LOOK) {
+        let straying = strays(trial.places(frame), 1.0) + strays(&self.expected, LOOK);
+        // Where the same labels stray for long and nothing else fits, not every frame is tried.
+        let again = straying == std::mem::replace(&mut self.straying, straying);
+        if own && straying == 0 {
+            self.rejected = 0;
             return false;
         }
+        if own && again && self.rejected > 0 && self.rejected % STRIDE != 0 {
+            self.rejected += 1;
+            return false;
+        }
+        self.tries += 1;
         let now = cost(trial, offsets, frame, &trial.sources[frame], trial.places(frame))
             + beside(&trial.answers[frame]);
         let mut best: Option<(f64, Option<Source>, FrameAnswer)> = None;
-        let starts = [near[0], from_here.then_some(frame)];
-        for start in starts.into_iter().flatten() {
-            if start == frame {
-                self.expected.clear();
-                self.expected.extend_from_slice(trial.places(frame));
+        let mut answer = trial.answers[near[0].unwrap_or(frame)].clone();
+        let mut source = labels(trial, offsets, frame, &self.expected);
+        for _ in 0..ROUNDS {
+            self.seen.clear(); self.solves += 1;
+            give(trial.row(frame), source.as_ref(), &mut self.seen);
+            trial.tracker.solve_into(scratch, &self.seen, frame, &mut answer);
+            self.expected.clear();
+            let placed = trial.tracker.markers.placed.iter().zip(&offsets.offsets);
+            let pose = &scratch.buffers.pose;
+            self.expected.extend(placed.map(|(placed, &offset)| placed.beside(pose, offset)));
+            let next = labels(trial, offsets, frame, &self.expected);
+            let found = cost(trial, offsets, frame, &source, &self.expected) + beside(&answer);
+            if best.as_ref().is_none_or(|(least, ..)| found < *least) {
+                best = Some((found, source.clone(), answer.clone()));
             }
-            let mut answer = trial.answers[start].clone();
-            let mut source = labels(trial, offsets, frame, &self.expected);
-            for _ in 0..ROUNDS {
-                self.seen.clear();
-                give(trial.row(frame), source.as_ref(), &mut self.seen);
-                trial.tracker.solve_into(scratch, &self.seen, frame, &mut answer);
-                self.expected.clear();
-                let placed = trial.tracker.markers.placed.iter().zip(&offsets.offsets);
-                let pose = &scratch.buffers.pose;
-                self.expected.extend(placed.map(|(placed, &offset)| placed.beside(pose, offset)));
-                let next = labels(trial, offsets, frame, &self.expected);
-                let found = cost(trial, offsets, frame, &source, &self.expected) + beside(&answer);
-                if best.as_ref().is_none_or(|(least, ..)| found < *least) {
-                    best = Some((found, source.clone(), answer.clone()));
-                }
-                if next == source {
-                    break;
-                }
-                source = next;
+            if next == source {
+                break;
             }
+            source = next;
         }
         let Some((found, source, answer)) = best else { return false };
         let worse = answer.status == FrameStatus::Infeasible
             && trial.answers[frame].status != FrameStatus::Infeasible;
-        let kept = found - out(trial, offsets, frame, &source);
-        if worse || found > now - GAIN * kept - LEAST_GAIN {
+        // What changes less of the recording need not fit better.
+        let own_labels = |source: &Option<Source>| source.as_ref().map_or(trial.count, |source| {
+            (0..trial.count).filter(|&m| source[m] == Some(m)).count()
+        });
+        let needed = if own_labels(&source) > own_labels(&trial.sources[frame]) {
+            0.0
+        } else {
+            LEAST_GAIN + GAIN * (found - out(trial, offsets, frame, &source))
+        };
+        if worse || found > now - needed {
+            self.rejected += 1;
             return false;
         }
+        self.rejected = 0;
         trial.sources[frame] = source;
         trial.answers[frame] = answer;
         let pose = &mut scratch.buffers.pose;

@@ -1,7 +1,7 @@
 //! A recording with its answers, frame by frame, as the search for faults changes them.
 
 use super::offsets::Offsets;
-use super::{Repairs, Source};
+use super::Source;
 use crate::answer::{FrameAnswer, FrameStatus};
 use crate::recorded::Recorded;
 use crate::tracker::{Scratch, Tracker};
@@ -28,7 +28,6 @@ impl<'a> Trial<'a> {
     pub(super) fn new(
         tracker: &'a Tracker,
         recorded: &dyn Recorded,
-        repairs: &Repairs,
         answers: &[FrameAnswer],
     ) -> Self {
         let (frames, count) = (answers.len(), tracker.markers.placed.len());
@@ -38,7 +37,7 @@ impl<'a> Trial<'a> {
             row.resize(count, None);
             seen.append(&mut row);
         }
-        let sources = (0..frames).map(|frame| repairs.source(frame).cloned()).collect();
+        let sources = vec![None; frames];
         let nothing = vec![Vec3::ZERO; frames * count];
         let (residuals, places) = (nothing.clone(), nothing);
         let answers = answers.to_vec();

@@ -95,7 +95,7 @@ impl<'a> Job<'a> {
         let (mut swaps, mut left_out) = (vec![], vec![]);
         if self.robust {
             let repairs = self.repaired(&recorded, repairs, &mut answers, &mut progress);
-            let (exchanged, out) = robust::describe(&recorded, &repairs);
+            let (exchanged, out) = robust::describe(&recorded, &repairs, self.frames.len());
             let name = |marker: usize| self.recording.labels[self.labels[marker]].clone();
             let frames = |range: Range<usize>| first + range.start..first + range.end;
             swaps.extend(exchanged.into_iter().map(|e| Swap {
