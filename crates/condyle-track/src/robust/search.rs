@@ -15,7 +15,7 @@ use super::Source;
 use super::assignment::assign;
 use super::offsets::Offsets;
 use super::trial::Trial;
-use crate::answer::{FrameAnswer, FrameStatus};
+use crate::answer::{FrameAnswer, FrameStatus, better};
 use crate::tracker::Scratch;
 use condyle_math::Vec3;
 
@@ -26,6 +26,10 @@ const NEARER: f64 = 0.5;
 /// C must fall by this share of what the kept markers leave, and by this, in m².
 const GAIN: f64 = 0.10;
 const LEAST_GAIN: f64 = 1e-6;
+/// Two postures whose F + P differ by this share are alike; one that turns a joint less by this, in
+/// radians, goes on from its neighbour.
+const ALIKE: f64 = 1e-4;
+const LEAST_TURN: f64 = 0.1;
 /// How often a frame is solved with labels given anew.
 const ROUNDS: usize = 4;
 /// How often the trial is gone through in both directions.
@@ -56,17 +60,13 @@ pub(super) fn search(trial: &mut Trial<'_>, scratch: &mut Scratch, offsets: &Off
                 continue;
             }
             tried[usize::from(backwards)][frame] = around;
-            let t0 = std::time::Instant::now();
-            let ok = candidate.try_frame(trial, scratch, offsets, frame, near);
-            candidate.time += t0.elapsed().as_secs_f64();
-            if ok {
+            let moved = near[0].is_some_and(|near| changes[near] > 0);
+            if candidate.try_frame(trial, scratch, offsets, frame, near, moved) {
                 changes[frame] += 1;
                 changed = true;
             }
         }
         any |= changed;
-        eprintln!("DBG pass {pass} tries {} solves {} changed {} time {:.3}", candidate.tries, candidate.solves, changes.iter().sum::<u32>(), candidate.time);
-        candidate.tries=0; candidate.solves=0; candidate.time=0.0;
         if pass > 0 && !changed {
             break;
         }
@@ -82,11 +82,11 @@ struct Candidate {
     rejected: usize,
     expected: Vec<Vec3>,
     seen: Vec<Option<[f64; 3]>>,
-    tries: usize, solves: usize, time: f64,
 }
 
 impl Candidate {
-    /// Tries a frame from its neighbours on one side; whether it was changed.
+    /// Tries a frame from its neighbours on one side, of which the nearer was `moved` by now or not;
+    /// whether it was changed.
     fn try_frame(
         &mut self,
         trial: &mut Trial<'_>,
@@ -94,6 +94,7 @@ impl Candidate {
         offsets: &Offsets,
         frame: usize,
         near: [Option<usize>; 2],
+        moved: bool,
     ) -> bool {
         if trial.row(frame).iter().all(Option::is_none) {
             return false;
@@ -121,22 +122,21 @@ impl Candidate {
         let straying = strays(trial.places(frame), 1.0) + strays(&self.expected, LOOK);
         // Where the same labels stray for long and nothing else fits, not every frame is tried.
         let again = straying == std::mem::replace(&mut self.straying, straying);
-        if own && straying == 0 {
+        if own && straying == 0 && !moved {
             self.rejected = 0;
             return false;
         }
-        if own && again && self.rejected > 0 && self.rejected % STRIDE != 0 {
+        if own && again && !moved && self.rejected > 0 && self.rejected % STRIDE != 0 {
             self.rejected += 1;
             return false;
         }
-        self.tries += 1;
         let now = cost(trial, offsets, frame, &trial.sources[frame], trial.places(frame))
-            + beside(&trial.answers[frame]);
+            + beside(trial, &trial.answers[frame]);
         let mut best: Option<(f64, Option<Source>, FrameAnswer)> = None;
         let mut answer = trial.answers[near[0].unwrap_or(frame)].clone();
         let mut source = labels(trial, offsets, frame, &self.expected);
         for _ in 0..ROUNDS {
-            self.seen.clear(); self.solves += 1;
+            self.seen.clear();
             give(trial.row(frame), source.as_ref(), &mut self.seen);
             trial.tracker.solve_into(scratch, &self.seen, frame, &mut answer);
             self.expected.clear();
@@ -144,7 +144,7 @@ impl Candidate {
             let pose = &scratch.buffers.pose;
             self.expected.extend(placed.map(|(placed, &offset)| placed.beside(pose, offset)));
             let next = labels(trial, offsets, frame, &self.expected);
-            let found = cost(trial, offsets, frame, &source, &self.expected) + beside(&answer);
+            let found = cost(trial, offsets, frame, &source, &self.expected) + beside(trial, &answer);
             if best.as_ref().is_none_or(|(least, ..)| found < *least) {
                 best = Some((found, source.clone(), answer.clone()));
             }
@@ -154,18 +154,26 @@ impl Candidate {
             source = next;
         }
         let Some((found, source, answer)) = best else { return false };
-        let worse = answer.status == FrameStatus::Infeasible
-            && trial.answers[frame].status != FrameStatus::Infeasible;
-        // What changes less of the recording need not fit better.
-        let own_labels = |source: &Option<Source>| source.as_ref().map_or(trial.count, |source| {
-            (0..trial.count).filter(|&m| source[m] == Some(m)).count()
-        });
-        let needed = if own_labels(&source) > own_labels(&trial.sources[frame]) {
-            0.0
+        let before = &trial.answers[frame];
+        let broken = |answer: &FrameAnswer| answer.status == FrameStatus::Infeasible;
+        let accepted = if source == trial.sources[frame] {
+            // The same labels: a better posture, or one as good that goes on from the neighbour.
+            let neighbour = near[0].map(|near| &trial.answers[near]);
+            let turn = |answer| neighbour.map_or(0.0, |near| trial.tracker.largest_turn(near, answer));
+            let alike = answer.minimised() <= before.minimised() * (1.0 + ALIKE) + 1e-9;
+            better(&answer, before)
+                || moved && alike && broken(&answer) == broken(before)
+                    && turn(&answer) < turn(before) - LEAST_TURN
         } else {
-            LEAST_GAIN + GAIN * (found - out(trial, offsets, frame, &source))
+            // What changes less of the recording need not fit better.
+            let needed = if own_labels(&source, trial.count) > own_labels(&trial.sources[frame], trial.count) {
+                0.0
+            } else {
+                LEAST_GAIN + GAIN * (found - out(trial, offsets, frame, &source))
+            };
+            (broken(before) || !broken(&answer)) && found <= now - needed
         };
-        if worse || found > now - needed {
+        if !accepted {
             self.rejected += 1;
             return false;
         }
@@ -185,10 +193,18 @@ fn distance(seen: Option<[f64; 3]>, place: Vec3) -> Option<f64> {
     Some((Vec3::from(seen?) - place).norm())
 }
 
-/// What other targets than markers add to F + P, in m².
-fn beside(answer: &FrameAnswer) -> f64 {
-    let _ = answer;
-    answer.posture
+/// What is minimised besides the markers, in m².
+fn beside(trial: &Trial<'_>, answer: &FrameAnswer) -> f64 {
+    let markers = trial.tracker.markers.placed.iter().zip(&answer.marker_errors);
+    let used: f64 = markers.filter(|(_, e)| e.is_finite()).map(|(m, _)| m.weight).sum();
+    let mean = if used > 0.0 { answer.weighted_squares / used } else { 0.0 };
+    answer.minimised() - mean
+}
+
+/// How many markers have their own label.
+fn own_labels(source: &Option<Source>, count: usize) -> usize {
+    let own = |source: &Source| (0..count).filter(|&m| source[m] == Some(m)).count();
+    source.as_ref().map_or(count, own)
 }
 
 /// The labels of the markers that are nearest to these places: its own within the gate, else another's
