@@ -9,9 +9,9 @@
 //!
 //! - *found*: marker-frames off by over 50 mm that were put right or left out;
 //! - *accused*: marker-frames that are right, and were left out or given another label;
-//! - *angles*: the largest difference of a rotation from the clean answer, in all frames; in those with
-//!   labels over 50 mm off only of the rotations that stay within 1° if these labels are taken out by
-//!   hand.
+//! - *angles*: the largest difference of a rotation from the clean answer, in frames with labels over
+//!   50 mm off and in those beyond the fault, of the rotations that stay within 1° there if these labels
+//!   are taken out by hand.
 
 use condyle::formats::Recording;
 use condyle::math::Vec3;
@@ -286,9 +286,9 @@ fn with_faults(trials: &[Trial], faults: usize, tell: bool) -> Result<(), Box<dy
     let mut tallies = vec![Tally::default(); KINDS.len()];
     let mut references = vec![];
     for trial in trials {
-        let clean = run(trial, &trial.recording, false)?.0;
         // What is found where nothing was written in is the recording's own.
-        let own = touched(&trial.recording, &run(trial, &trial.recording, true)?.0);
+        let clean = run(trial, &trial.recording, true)?.0;
+        let own = touched(&trial.recording, &clean);
         references.push((clean, own));
     }
     for number in 0..faults {
@@ -408,7 +408,7 @@ fn one(
         off.fold(0.0, f64::max)
     };
     let other_frames: Vec<usize> =
-        clean.frames.clone().filter(|f| off_frames.binary_search(f).is_err()).collect();
+        clean.frames.clone().filter(|frame| !fault.frames.contains(frame)).collect();
     let (mut robust_off, mut plain_off) = ([0.0_f64; 2], [0.0_f64; 2]);
     for id in rotations(&trial.model) {
         tally.rotations += 1;
@@ -417,8 +417,10 @@ fn one(
             robust_off[0] = robust_off[0].max(of(&robust, id, &off_frames));
             plain_off[0] = plain_off[0].max(of(&plain, id, &off_frames));
         }
-        robust_off[1] = robust_off[1].max(of(&robust, id, &other_frames));
-        plain_off[1] = plain_off[1].max(of(&plain, id, &other_frames));
+        if of(&without, id, &other_frames) < 1.0 {
+            robust_off[1] = robust_off[1].max(of(&robust, id, &other_frames));
+            plain_off[1] = plain_off[1].max(of(&plain, id, &other_frames));
+        }
     }
     let [robust_in, robust_out] = robust_off;
     let [robust_off, plain_off] = [robust_off, plain_off].map(|[a, b]| a.max(b));

@@ -123,17 +123,20 @@ pub fn find(
     let mut trial = Trial::new(tracker, &Corrected { recorded, repairs }, answers);
     trial.measure(scratch, None);
     // Faults make a frame fit worse, so offsets are first taken where it fits well.
-    let mut frames: Vec<usize> = (0..trial.frames).collect();
+    let all: Vec<usize> = (0..trial.frames).collect();
+    let mut frames = all.clone();
     frames.sort_by(|&a, &b| trial.answers[a].minimised().total_cmp(&trial.answers[b].minimised()));
     frames.truncate(trial.frames.div_ceil(2).max(FEW.min(trial.frames)));
+    let mut offsets = Offsets::of(&trial, &frames);
+    trial.measure(scratch, Some(&offsets));
     for _ in 0..ROUNDS {
-        let offsets = Offsets::of(&trial, &frames);
-        trial.measure(scratch, Some(&offsets));
         if !search::search(&mut trial, scratch, &offsets) {
             break;
         }
-        frames = (0..trial.frames).collect();
+        offsets = Offsets::of(&trial, &all);
+        trial.measure(scratch, Some(&offsets));
     }
+    search::take_back(&mut trial, scratch, &offsets);
     for (frame, source) in trial.sources.into_iter().enumerate() {
         if let Some(source) = source {
             repairs.frames.insert(frame, source);

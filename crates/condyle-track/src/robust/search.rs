@@ -18,6 +18,7 @@ use super::trial::Trial;
 use crate::answer::{FrameAnswer, FrameStatus, better};
 use crate::tracker::Scratch;
 use condyle_math::Vec3;
+use condyle_model::Mode;
 
 /// A label this share of its gate from where its marker is expected is looked at.
 const LOOK: f64 = 0.75;
@@ -114,7 +115,9 @@ impl Candidate {
             let away = |marker: &usize| {
                 let label = trial.label(frame, *marker);
                 let off = label.and_then(|label| distance(trial.row(frame)[label], places[*marker]));
-                off.is_some_and(|off| off > share * offsets.gates[*marker])
+                off.zip(label).is_some_and(|(off, label)| {
+                    off > share * trial.gate(offsets, frame, label)
+                })
             };
             (0..trial.count).filter(away).count()
         };
@@ -166,11 +169,9 @@ impl Candidate {
                     && turn(&answer) < turn(before) - LEAST_TURN
         } else {
             // What changes less of the recording need not fit better.
-            let needed = if own_labels(&source, trial.count) > own_labels(&trial.sources[frame], trial.count) {
-                0.0
-            } else {
-                LEAST_GAIN + GAIN * (found - out(trial, offsets, frame, &source))
-            };
+            let fewer = own_labels(&source, trial.count)
+                > own_labels(&trial.sources[frame], trial.count);
+            let needed = if fewer { 0.0 } else { needed(trial, offsets, frame, &source, found) };
             (broken(before) || !broken(&answer)) && found <= now - needed
         };
         if !accepted {
@@ -178,11 +179,12 @@ impl Candidate {
             return false;
         }
         self.rejected = 0;
+        let before = std::mem::replace(&mut trial.answers[frame], answer);
+        trial.plain[frame].get_or_insert(before);
         trial.sources[frame] = source;
-        trial.answers[frame] = answer;
         let pose = &mut scratch.buffers.pose;
         let coordinates = &trial.answers[frame].coordinates;
-        if trial.tracker.program.evaluate(coordinates, condyle_model::Mode::Open, pose).is_ok() {
+        if trial.tracker.program.evaluate(coordinates, Mode::Open, pose).is_ok() {
             trial.measure_at(scratch, Some(offsets), frame);
         }
         true
@@ -191,6 +193,42 @@ impl Candidate {
 
 fn distance(seen: Option<[f64; 3]>, place: Vec3) -> Option<f64> {
     Some((Vec3::from(seen?) - place).norm())
+}
+
+/// By how much C must fall before labels are changed, in m².
+fn needed(
+    trial: &Trial<'_>,
+    offsets: &Offsets,
+    frame: usize,
+    source: &Option<Source>,
+    found: f64,
+) -> f64 {
+    LEAST_GAIN + GAIN * (found - out(trial, offsets, frame, source))
+}
+
+/// Takes back the changes of frames that, by the last offsets, fit no better than as they were.
+pub(super) fn take_back(trial: &mut Trial<'_>, scratch: &mut Scratch, offsets: &Offsets) {
+    let mut places = vec![];
+    for frame in 0..trial.frames {
+        let Some(plain) = trial.plain[frame].take() else { continue };
+        let pose = &mut scratch.buffers.pose;
+        if trial.sources[frame].is_none()
+            || trial.tracker.program.evaluate(&plain.coordinates, Mode::Open, pose).is_err()
+        {
+            continue;
+        }
+        places.clear();
+        let placed = trial.tracker.markers.placed.iter().zip(&offsets.offsets);
+        places.extend(placed.map(|(placed, &offset)| placed.beside(pose, offset)));
+        let before = cost(trial, offsets, frame, &None, &places) + beside(trial, &plain);
+        let source = &trial.sources[frame];
+        let now = cost(trial, offsets, frame, source, trial.places(frame))
+            + beside(trial, &trial.answers[frame]);
+        if now > before - needed(trial, offsets, frame, source, now) {
+            trial.sources[frame] = None;
+            trial.answers[frame] = plain;
+        }
+    }
 }
 
 /// What is minimised besides the markers, in m².
@@ -215,7 +253,8 @@ fn labels(
     frame: usize,
     places: &[Vec3],
 ) -> Option<Source> {
-    let (row, gates) = (trial.row(frame), &offsets.gates);
+    let row = trial.row(frame);
+    let gates: Vec<f64> = (0..trial.count).map(|l| trial.gate(offsets, frame, l)).collect();
     let off = |label: usize, marker: usize| {
         distance(row[label], places[marker]).unwrap_or(f64::INFINITY)
     };
@@ -272,7 +311,7 @@ fn cost(
         let label = source.as_ref().map_or(Some(marker), |source| source[marker]);
         let Some(label) = label else { continue };
         let Some(off) = distance(row[label], places[marker]) else { continue };
-        squares += trial.tracker.markers.placed[label].weight * off.min(offsets.gates[label]).powi(2);
+        squares += trial.tracker.markers.placed[label].weight * off.min(trial.gate(offsets, frame, label)).powi(2);
     }
     squares / total(trial, frame) + out(trial, offsets, frame, source)
 }
@@ -283,7 +322,7 @@ fn out(trial: &Trial<'_>, offsets: &Offsets, frame: usize, source: &Option<Sourc
     let mut given = vec![false; trial.count];
     source.iter().flatten().for_each(|&label| given[label] = true);
     let labels = (0..trial.count).filter(|&l| !given[l] && trial.row(frame)[l].is_some());
-    let squares = labels.map(|l| trial.tracker.markers.placed[l].weight * offsets.gates[l].powi(2));
+    let squares = labels.map(|l| trial.tracker.markers.placed[l].weight * trial.gate(offsets, frame, l).powi(2));
     squares.sum::<f64>() / total(trial, frame)
 }
 

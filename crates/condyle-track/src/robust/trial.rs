@@ -16,13 +16,21 @@ pub(super) struct Trial<'a> {
     /// Frame by frame and label by label, as recorded.
     pub seen: Vec<Option<[f64; 3]>>,
     pub answers: Vec<FrameAnswer>,
+    /// Those of frames that were changed, as they were first.
+    pub plain: Vec<Option<FrameAnswer>>,
     /// Frame by frame the labels of the markers; `None` where each has its own.
     pub sources: Vec<Option<Source>>,
     /// Frame by frame and marker by marker: the offset of what is recorded for it, in its segment's
     /// axes, and where in the world the marker with its own offset is.
     residuals: Vec<Vec3>,
     places: Vec<Vec3>,
+    /// Frame by frame and label by label: whether it is to the last digit where it was one frame before.
+    held: Vec<bool>,
 }
+
+/// The gate of a label that did not move at all is this share of what it is else: noise alone moves a
+/// marker, so it is hardly one.
+const HELD: f64 = 0.25;
 
 impl<'a> Trial<'a> {
     pub(super) fn new(
@@ -38,10 +46,13 @@ impl<'a> Trial<'a> {
             seen.append(&mut row);
         }
         let sources = vec![None; frames];
+        let still = |at: usize| at >= count && seen[at].is_some() && seen[at] == seen[at - count];
+        let held = (0..frames * count).map(still).collect();
         let nothing = vec![Vec3::ZERO; frames * count];
         let (residuals, places) = (nothing.clone(), nothing);
         let answers = answers.to_vec();
-        Self { tracker, frames, count, seen, answers, sources, residuals, places }
+        let plain = vec![None; frames];
+        Self { tracker, frames, count, seen, answers, plain, sources, residuals, places, held }
     }
 
     /// The recorded positions of a frame, label by label.
@@ -52,6 +63,12 @@ impl<'a> Trial<'a> {
     /// Where the markers of a frame are with their offsets.
     pub(super) fn places(&self, frame: usize) -> &[Vec3] {
         &self.places[frame * self.count..(frame + 1) * self.count]
+    }
+
+    /// The distance in metres from which on a label strays in a frame.
+    pub(super) fn gate(&self, offsets: &Offsets, frame: usize, label: usize) -> f64 {
+        let held = self.held[frame * self.count + label];
+        offsets.gates[label] * if held { HELD } else { 1.0 }
     }
 
     /// The label of a marker in a frame.
