@@ -16,7 +16,7 @@
 use condyle::formats::Recording;
 use condyle::math::Vec3;
 use condyle::model::Mode;
-use condyle::tracking::{Job, Request, Tracking};
+use condyle::tracking::{Faulty, Job, Request, Tracking};
 use condyle::{CoordinateId, CoordinateKind, Model, Observed, open};
 use std::collections::HashSet;
 use std::error::Error;
@@ -98,6 +98,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         });
     }
     clean(&trials)?;
+    alone(&trials)?;
     let mut measured: Vec<Trial> =
         trials.into_iter().filter(|trial| FAULTY.contains(&trial.name.as_str())).collect();
     let generated: Vec<Trial> =
@@ -106,7 +107,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     with_faults(&measured, faults, tell)
 }
 
-fn run(trial: &Trial, recording: &Recording, robust: bool) -> Result<(Tracking, f64), Box<dyn Error>> {
+fn run(
+    trial: &Trial,
+    recording: &Recording,
+    robust: bool,
+) -> Result<(Tracking, f64), Box<dyn Error>> {
     let request = Request { robust, threads: Some(1), ..trial.request.clone() };
     let job = Job::new(trial.model.clone(), recording, &request)?;
     let start = Instant::now();
@@ -124,7 +129,9 @@ fn timed(trial: &Trial, robust: bool) -> Result<(Tracking, f64), Box<dyn Error>>
 }
 
 fn clean(trials: &[Trial]) -> Result<(), Box<dyn Error>> {
-    println!("| recording | frames | RMS plain | robust | largest RMS of a rotation | RMS of translations | put right | left out | speed |");
+    println!(
+        "| recording | frames | RMS plain | robust | largest RMS of a rotation | RMS of translations | put right | left out | speed |"
+    );
     println!("| --- | ---: | ---: | ---: | --- | ---: | --- | ---: | ---: |");
     for trial in trials {
         let (plain, plain_time) = timed(trial, false)?;
@@ -139,7 +146,7 @@ fn clean(trials: &[Trial]) -> Result<(), Box<dyn Error>> {
             .filter(|&id| trial.model.coordinate(id).kind == CoordinateKind::Translation)
             .map(|id| off(&trial.model, &plain, &robust, id, frames.clone()))
             .fold(0.0, f64::max);
-        let out: usize = robust.left_out.iter().map(|l| l.frames.len()).sum();
+        let out: usize = left_out(&robust).map(|f| f.frames.len()).sum();
         println!(
             "| {} | {} | {:.2} mm | {:.2} mm | {:.2}° ({}) | {:.1} mm | {} | {} | {:.0} % |",
             trial.name,
@@ -156,9 +163,56 @@ fn clean(trials: &[Trial]) -> Result<(), Box<dyn Error>> {
         for swap in &robust.swaps {
             eprintln!("{}: {swap}", trial.name);
         }
-        for left in &robust.left_out {
-            eprintln!("{}: {left}", trial.name);
+        for faulty in &robust.faulty {
+            eprintln!("{}: {faulty}", trial.name);
         }
+    }
+    Ok(())
+}
+
+/// Frames without the trial around them, in which no offset is known: as they are, and with the fault.
+fn alone(trials: &[Trial]) -> Result<(), Box<dyn Error>> {
+    println!();
+    println!("| frames alone | frames | changed as they are | plain | robust |");
+    println!("| --- | ---: | ---: | ---: | ---: |");
+    let mut dice = Dice(5);
+    for trial in trials {
+        let (mut changed, mut frames, mut plain_off, mut robust_off) = (0, 0, vec![], vec![]);
+        let count = trial.recording.frames();
+        for at in (0..count).step_by(count.div_ceil(20)) {
+            let width = trial.recording.labels.len();
+            let mut one = Recording {
+                times: trial.recording.times[at..=at].to_vec(),
+                positions: trial.recording.frame(at).to_vec(),
+                ..trial.recording.clone()
+            };
+            let (clean, _) = run(trial, &one, false)?;
+            let (robust, _) = run(trial, &one, true)?;
+            frames += 1;
+            changed += usize::from(!robust.swaps.is_empty() || left_out(&robust).count() > 0);
+            let label = clean.labels[dice.below(clean.labels.len())];
+            let away = dice.vector();
+            let away = away * (0.5 / away.norm());
+            let Some(place) = one.positions[label % width].position_mut() else { continue };
+            *place = (Vec3::from(*place) + away).to_array();
+            let (plain, _) = run(trial, &one, false)?;
+            let (robust, _) = run(trial, &one, true)?;
+            let most = |a: &Tracking| {
+                let offs = rotations(&trial.model).map(|id| off(&trial.model, a, &clean, id, 0..1));
+                offs.fold(0.0, f64::max).to_degrees()
+            };
+            plain_off.push(most(&plain));
+            robust_off.push(most(&robust));
+        }
+        let within = |offs: &[f64]| {
+            format!("{} of {}", offs.iter().filter(|o| **o < 5.0).count(), offs.len())
+        };
+        println!(
+            "| {} | {frames} | {changed} | {} | {} |",
+            trial.name,
+            within(&plain_off),
+            within(&robust_off)
+        );
     }
     Ok(())
 }
@@ -181,7 +235,8 @@ fn off(
     let turns = model.coordinate(id).kind == CoordinateKind::Rotation;
     let square = |frame| {
         let off: f64 = value(a, frame) - value(b, frame);
-        let whole = if turns { std::f64::consts::TAU * (off / std::f64::consts::TAU).round() } else { 0.0 };
+        let whole =
+            if turns { std::f64::consts::TAU * (off / std::f64::consts::TAU).round() } else { 0.0 };
         (off - whole).powi(2)
     };
     (frames.map(square).sum::<f64>() / n).sqrt()
@@ -302,7 +357,9 @@ fn with_faults(trials: &[Trial], faults: usize, tell: bool) -> Result<(), Box<dy
         one(trial, reference, &recording, &fault, &mut tallies[kind], tell.then_some(number))?;
     }
     println!();
-    println!("| fault | faults | marker-frames over 50 mm off: found | named as it is | accused | rotations determined | angles within 2° | plain | worse than plain | speed |");
+    println!(
+        "| fault | faults | marker-frames over 50 mm off: found | named as it is | accused | rotations determined | angles within 2° | plain | worse than plain | speed |"
+    );
     println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     let mut all = Tally::default();
     for (kind, tally) in KINDS.iter().zip(&tallies) {
@@ -343,11 +400,15 @@ fn print_row(kind: &str, t: &Tally) {
     );
 }
 
+fn left_out(robust: &Tracking) -> impl Iterator<Item = &Faulty> {
+    robust.faulty.iter().filter(|f| f.fault.is_left_out())
+}
+
 /// Frame and label of everything that was put right or left out.
 fn touched(recording: &Recording, robust: &Tracking) -> HashSet<(usize, usize)> {
     let place = |name: &String| recording.labels.iter().position(|label| label == name);
     let swaps = robust.swaps.iter().flat_map(|s| s.labels.iter().map(|l| (l, &s.frames)));
-    let left_out = robust.left_out.iter().map(|l| (&l.label, &l.frames));
+    let left_out = left_out(robust).map(|f| (&f.label, &f.frames));
     let all = swaps.chain(left_out).filter_map(|(label, frames)| Some((place(label)?, frames)));
     all.flat_map(|(label, frames)| frames.clone().map(move |frame| (frame, label))).collect()
 }
@@ -439,7 +500,7 @@ fn one(
         );
         if robust_off > 2.0 || accused > 0 || found < all_off {
             robust.swaps.iter().take(6).for_each(|swap| println!("    {swap}"));
-            robust.left_out.iter().take(6).for_each(|left| println!("    {left}"));
+            robust.faulty.iter().take(6).for_each(|left| println!("    {left}"));
         }
     }
     Ok(())
@@ -452,7 +513,7 @@ fn is_named(trial: &Trial, fault: &Fault, off: &[usize], robust: &Tracking) -> b
     let cycles: Vec<Vec<String>> = match fault.kind {
         "three-cycle" => vec![names],
         "ghost" | "frozen" | "at 0 0 0" => {
-            let covered = robust.left_out.iter().filter(|l| l.label == names[0]);
+            let covered = left_out(robust).filter(|l| l.label == names[0]);
             return enough(off, covered.map(|l| &l.frames));
         }
         _ => names.chunks_exact(2).map(<[String]>::to_vec).collect(),

@@ -7,7 +7,7 @@ use crate::output;
 use crate::progress::frames_bar;
 use clap::Args;
 use condyle::formats::{Recording, csv};
-use condyle::tracking::{Job, MarkerErrors, Report, Request, Tracking};
+use condyle::tracking::{Faulty, Job, MarkerErrors, Report, Request, Tracking};
 use condyle::{Model, open};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -167,10 +167,14 @@ fn json(trial: &Path, report: &Report, seconds: f64) -> Value {
     let swaps = report.swaps.iter().map(
         |swap| json!({ "labels": swap.labels, "frames": [swap.frames.start, swap.frames.end] }),
     );
-    let left_out = report.left_out.iter().map(|left| {
-        let frames = [left.frames.start, left.frames.end];
-        json!({ "label": left.label, "frames": frames, "fault": left.fault.name() })
-    });
+    let faulty = |left_out: bool| -> Vec<Value> {
+        let wanted = report.faulty.iter().filter(|f| f.fault.is_left_out() == left_out);
+        let one = |f: &Faulty| {
+            let frames = [f.frames.start, f.frames.end];
+            json!({ "label": f.label, "frames": frames, "fault": f.fault.name() })
+        };
+        wanted.map(one).collect()
+    };
     json!({
         "trial": trial.to_string_lossy(),
         "frames": s.frames,
@@ -186,7 +190,8 @@ fn json(trial: &Path, report: &Report, seconds: f64) -> Value {
         "iterations": report.iterations,
         "mostly_at_limit": report.mostly_at_limit,
         "swapped_labels": swaps.collect::<Vec<_>>(),
-        "left_out": left_out.collect::<Vec<_>>(),
+        "left_out": faulty(true),
+        "not_resolved": faulty(false),
         "markers": markers,
     })
 }
@@ -219,8 +224,8 @@ fn print_summary(
     for swap in &report.swaps {
         text.push_str(&format!("  {swap}\n"));
     }
-    for left in &report.left_out {
-        text.push_str(&format!("  {left}\n"));
+    for faulty in &report.faulty {
+        text.push_str(&format!("  {faulty}\n"));
     }
     if let [first, ..] = s.failed[..] {
         text.push_str(&format!(

@@ -76,7 +76,8 @@ mod tests {
         // All 120 ways of five rows among five columns, for forty tables of remainders.
         for seed in 1..=40_u64 {
             let cost = |r: usize, c: usize| {
-                let mixed = (seed * 7919 + r as u64 * 104_729 + c as u64 * 1_299_709) * 2_654_435_761;
+                let mixed =
+                    (seed * 7919 + r as u64 * 104_729 + c as u64 * 1_299_709) * 2_654_435_761;
                 ((mixed >> 16) % 1000) as f64
             };
             let sum = |columns: &[usize]| -> f64 {
@@ -99,7 +100,10 @@ mod tests {
     fn more_columns_than_rows_leave_some_free() {
         let cost = [[5.0, 1.0, 9.0], [6.0, 2.0, 9.0]];
         // 1 + 6 = 7 is less than 5 + 2 = 7? Equal; with 6 made 8 the first row must give way.
-        assert_eq!(assign(2, 3, |r, c| cost[r][c] + if r + c == 1 { 2.0 * r as f64 } else { 0.0 }), Some(vec![0, 1]));
+        assert_eq!(
+            assign(2, 3, |r, c| cost[r][c] + if r + c == 1 { 2.0 * r as f64 } else { 0.0 }),
+            Some(vec![0, 1])
+        );
         assert_eq!(assign(2, 1, |_, _| 0.0), None);
     }
 }

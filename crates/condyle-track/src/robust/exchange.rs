@@ -44,16 +44,18 @@ pub fn exchanged_throughout(
             let Some(seen) = *seen else { continue };
             n[label] += 1.0;
             for (marker, placed) in tracker.markers.placed.iter().enumerate() {
-                squares[label * count + marker] += (placed.at(pose) - Vec3::from(seen)).norm_squared();
+                squares[label * count + marker] +=
+                    (placed.at(pose) - Vec3::from(seen)).norm_squared();
             }
         }
     }
-    let mean = |label: usize, marker: usize| squares[label * count + marker] / f64::max(n[label], 1.0);
+    let mean =
+        |label: usize, marker: usize| squares[label * count + marker] / f64::max(n[label], 1.0);
     let suspects: Vec<usize> =
         (0..count).filter(|&l| n[l] > 0.0 && mean(l, l) > IN_PLACE * IN_PLACE).collect();
-    let Some(columns) = assign(suspects.len(), suspects.len(), |row, column| {
-        mean(suspects[row], suspects[column])
-    }) else {
+    let Some(columns) =
+        assign(suspects.len(), suspects.len(), |row, column| mean(suspects[row], suspects[column]))
+    else {
         return false;
     };
     let mut labels: Vec<usize> = (0..count).collect();

@@ -15,9 +15,9 @@ pub struct Exchanged {
     pub frames: Range<usize>,
 }
 
-/// A label that no marker of the model can have over a run of frames.
+/// A label at which something is the matter over a run of frames.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LeftOut {
+pub struct Faulty {
     /// Position among the marker targets.
     pub marker: usize,
     /// The frames.
@@ -27,14 +27,16 @@ pub struct LeftOut {
 }
 
 /// What is the matter with a label.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Fault {
-    /// It is at exactly 0 0 0.
+    /// It is at exactly 0 0 0, and left out.
     AtOrigin,
-    /// It stands still where the body moves on.
+    /// It stands still where the body moves on, and is left out.
     Frozen,
-    /// It is where no marker of its segment can be.
+    /// It is where no marker can be that the others leave a place for, and is left out.
     Elsewhere,
+    /// It is far from its own offset, and nothing was found that fits clearly better: it is used as it is.
+    Unresolved,
 }
 
 impl Fault {
@@ -44,7 +46,13 @@ impl Fault {
             Self::AtOrigin => "at 0 0 0",
             Self::Frozen => "frozen",
             Self::Elsewhere => "elsewhere",
+            Self::Unresolved => "not resolved",
         }
+    }
+
+    /// Whether such a label is left out.
+    pub fn is_left_out(self) -> bool {
+        self != Self::Unresolved
     }
 }
 
@@ -58,7 +66,7 @@ pub fn describe(
     recorded: &dyn Recorded,
     repairs: &Repairs,
     frames: usize,
-) -> (Vec<Exchanged>, Vec<LeftOut>) {
+) -> (Vec<Exchanged>, Vec<Faulty>) {
     let mut seen = vec![];
     let mut cycles: BTreeMap<Vec<usize>, Vec<usize>> = BTreeMap::new();
     let mut out: BTreeMap<usize, Vec<(usize, [f64; 3])>> = BTreeMap::new();
@@ -89,18 +97,26 @@ pub fn describe(
             exchanged.push(Exchanged { cycle: cycle.clone(), frames });
         }
     }
-    let mut left_out = vec![];
+    let mut faulty = vec![];
     for (marker, places) in out {
         let frames: Vec<usize> = places.iter().map(|&(frame, _)| frame).collect();
         for frames in runs(&frames, |frame| unseen(marker, frame)) {
             let places = places.iter().filter(|(frame, _)| frames.contains(frame));
             let fault = fault_of(&places.map(|&(_, place)| place).collect::<Vec<_>>());
-            left_out.push(LeftOut { marker, frames, fault });
+            faulty.push(Faulty { marker, frames, fault });
         }
     }
+    let mut unresolved: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for &(frame, label) in &repairs.unresolved {
+        unresolved.entry(label).or_default().push(frame);
+    }
+    for (marker, frames) in unresolved {
+        let runs = runs(&frames, |frame| unseen(marker, frame)).into_iter();
+        faulty.extend(runs.map(|frames| Faulty { marker, frames, fault: Fault::Unresolved }));
+    }
     exchanged.sort_by_key(|e| e.frames.start);
-    left_out.sort_by_key(|l| l.frames.start);
-    (exchanged, left_out)
+    faulty.sort_by_key(|f| (f.fault, f.frames.start));
+    (exchanged, faulty)
 }
 
 fn fault_of(places: &[[f64; 3]]) -> Fault {
@@ -109,7 +125,8 @@ fn fault_of(places: &[[f64; 3]]) -> Fault {
     }
     let still = (0..3).all(|axis| {
         let values = places.iter().map(|place| place[axis]);
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+        let (low, high) =
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
         high - low < STILL
     });
     if still && places.len() >= FEWEST_STILL { Fault::Frozen } else { Fault::Elsewhere }

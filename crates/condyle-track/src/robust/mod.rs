@@ -19,13 +19,14 @@ mod search;
 mod trial;
 
 pub use exchange::exchanged_throughout;
-pub use faults::{Exchanged, Fault, LeftOut, describe};
+pub use faults::{Exchanged, Fault, Faulty, describe};
+pub use offsets::FEWEST_FRAMES;
 
 use crate::answer::FrameAnswer;
 use crate::recorded::Recorded;
 use crate::tracker::{Scratch, Tracker};
-use std::collections::BTreeMap;
 use offsets::Offsets;
+use std::collections::BTreeMap;
 use trial::Trial;
 
 /// For each marker target the one whose recorded position it gets; `None` if it gets none.
@@ -43,6 +44,8 @@ pub struct Repairs {
     throughout: Vec<usize>,
     /// The frames in which that is not so.
     frames: BTreeMap<usize, Source>,
+    /// Frame and label of what strays far and is used all the same.
+    unresolved: Vec<(usize, usize)>,
 }
 
 impl Repairs {
@@ -53,7 +56,8 @@ impl Repairs {
         for frame in 0..frames {
             recorded.positions(frame, &mut seen);
             let labels = seen.iter().zip(&tracker.markers.placed).enumerate();
-            let lost = labels.filter(|(_, (seen, placed))| **seen == Some([0.0; 3]) && !placed.of_world());
+            let lost =
+                labels.filter(|(_, (seen, placed))| **seen == Some([0.0; 3]) && !placed.of_world());
             let lost: Vec<usize> = lost.map(|(label, _)| label).collect();
             if !lost.is_empty() {
                 repairs.lost.insert(frame, lost);
@@ -78,7 +82,10 @@ impl Repairs {
             Some(source) => source.iter().map(|label| label.map(throughout)).collect(),
             None => (0..count).map(|marker| Some(throughout(marker))).collect(),
         };
-        for label in source.iter_mut().filter(|l| l.is_some_and(|l| lost.is_some_and(|lost| lost.contains(&l)))) {
+        for label in source
+            .iter_mut()
+            .filter(|l| l.is_some_and(|l| lost.is_some_and(|lost| lost.contains(&l))))
+        {
             *label = None;
         }
         Some(source)
@@ -137,6 +144,7 @@ pub fn find(
         trial.measure(scratch, Some(&offsets));
     }
     search::take_back(&mut trial, scratch, &offsets);
+    repairs.unresolved = trial.far(&offsets, UNRESOLVED, &repairs.throughout);
     for (frame, source) in trial.sources.into_iter().enumerate() {
         if let Some(source) = source {
             repairs.frames.insert(frame, source);
@@ -144,6 +152,9 @@ pub fn find(
     }
     *answers = trial.answers;
 }
+
+/// A label this many gates from its offset that is used all the same is told.
+const UNRESOLVED: f64 = 2.0;
 
 /// Of a shorter trial all frames count.
 const FEW: usize = 24;

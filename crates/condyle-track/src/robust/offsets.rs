@@ -9,8 +9,9 @@ const SCALES: f64 = 4.0;
 const LEAST_GATE: f64 = 0.040;
 /// Where the offset is not known, a marker strays from this distance on, in metres.
 const UNKNOWN_GATE: f64 = 0.150;
-/// A marker seen in fewer frames has no known offset.
-const FEWEST: usize = 12;
+/// A marker seen in fewer frames has no known offset: only where it is off by more than 150 mm it is
+/// looked at.
+pub const FEWEST_FRAMES: usize = 12;
 /// The median deviation of a normal distribution's norm in three dimensions is 1.54 of one of them.
 const MEDIAN_TO_SCALE: f64 = 1.0 / 1.54;
 
@@ -29,7 +30,7 @@ impl Offsets {
         for marker in 0..trial.count {
             residuals.clear();
             residuals.extend(frames.iter().filter_map(|&frame| trial.residual(frame, marker)));
-            if residuals.len() < FEWEST {
+            if residuals.len() < FEWEST_FRAMES {
                 offsets.push(Vec3::ZERO);
                 gates.push(UNKNOWN_GATE);
                 continue;
@@ -39,8 +40,8 @@ impl Offsets {
                 sorted.extend(residuals.iter().map(of));
                 median(sorted)
             };
-            let [x, y, z] = [|v: &Vec3| v.x, |v: &Vec3| v.y, |v: &Vec3| v.z]
-                .map(|of| axis(of, &mut sorted));
+            let [x, y, z] =
+                [|v: &Vec3| v.x, |v: &Vec3| v.y, |v: &Vec3| v.z].map(|of| axis(of, &mut sorted));
             let offset = Vec3::new(x, y, z);
             sorted.clear();
             sorted.extend(residuals.iter().map(|&r| (r - offset).norm()));

@@ -114,10 +114,10 @@ impl Candidate {
         let strays = |places: &[Vec3], share: f64| {
             let away = |marker: &usize| {
                 let label = trial.label(frame, *marker);
-                let off = label.and_then(|label| distance(trial.row(frame)[label], places[*marker]));
-                off.zip(label).is_some_and(|(off, label)| {
-                    off > share * trial.gate(offsets, frame, label)
-                })
+                let off =
+                    label.and_then(|label| distance(trial.row(frame)[label], places[*marker]));
+                off.zip(label)
+                    .is_some_and(|(off, label)| off > share * trial.gate(offsets, frame, label))
             };
             (0..trial.count).filter(away).count()
         };
@@ -147,7 +147,8 @@ impl Candidate {
             let pose = &scratch.buffers.pose;
             self.expected.extend(placed.map(|(placed, &offset)| placed.beside(pose, offset)));
             let next = labels(trial, offsets, frame, &self.expected);
-            let found = cost(trial, offsets, frame, &source, &self.expected) + beside(trial, &answer);
+            let found =
+                cost(trial, offsets, frame, &source, &self.expected) + beside(trial, &answer);
             if best.as_ref().is_none_or(|(least, ..)| found < *least) {
                 best = Some((found, source.clone(), answer.clone()));
             }
@@ -162,15 +163,18 @@ impl Candidate {
         let accepted = if source == trial.sources[frame] {
             // The same labels: a better posture, or one as good that goes on from the neighbour.
             let neighbour = near[0].map(|near| &trial.answers[near]);
-            let turn = |answer| neighbour.map_or(0.0, |near| trial.tracker.largest_turn(near, answer));
+            let turn =
+                |answer| neighbour.map_or(0.0, |near| trial.tracker.largest_turn(near, answer));
             let alike = answer.minimised() <= before.minimised() * (1.0 + ALIKE) + 1e-9;
             better(&answer, before)
-                || moved && alike && broken(&answer) == broken(before)
+                || moved
+                    && alike
+                    && broken(&answer) == broken(before)
                     && turn(&answer) < turn(before) - LEAST_TURN
         } else {
             // What changes less of the recording need not fit better.
-            let fewer = own_labels(&source, trial.count)
-                > own_labels(&trial.sources[frame], trial.count);
+            let fewer =
+                own_labels(&source, trial.count) > own_labels(&trial.sources[frame], trial.count);
             let needed = if fewer { 0.0 } else { needed(trial, offsets, frame, &source, found) };
             (broken(before) || !broken(&answer)) && found <= now - needed
         };
@@ -247,20 +251,13 @@ fn own_labels(source: &Option<Source>, count: usize) -> usize {
 
 /// The labels of the markers that are nearest to these places: its own within the gate, else another's
 /// that strays, or none. `None` if each has its own.
-fn labels(
-    trial: &Trial<'_>,
-    offsets: &Offsets,
-    frame: usize,
-    places: &[Vec3],
-) -> Option<Source> {
+fn labels(trial: &Trial<'_>, offsets: &Offsets, frame: usize, places: &[Vec3]) -> Option<Source> {
     let row = trial.row(frame);
     let gates: Vec<f64> = (0..trial.count).map(|l| trial.gate(offsets, frame, l)).collect();
-    let off = |label: usize, marker: usize| {
-        distance(row[label], places[marker]).unwrap_or(f64::INFINITY)
-    };
+    let off =
+        |label: usize, marker: usize| distance(row[label], places[marker]).unwrap_or(f64::INFINITY);
     let own = |m: usize| off(m, m) <= gates[m];
-    let suspects: Vec<usize> =
-        (0..trial.count).filter(|&m| row[m].is_some() && !own(m)).collect();
+    let suspects: Vec<usize> = (0..trial.count).filter(|&m| row[m].is_some() && !own(m)).collect();
     if suspects.is_empty() {
         return None;
     }
@@ -311,7 +308,8 @@ fn cost(
         let label = source.as_ref().map_or(Some(marker), |source| source[marker]);
         let Some(label) = label else { continue };
         let Some(off) = distance(row[label], places[marker]) else { continue };
-        squares += trial.tracker.markers.placed[label].weight * off.min(trial.gate(offsets, frame, label)).powi(2);
+        squares += trial.tracker.markers.placed[label].weight
+            * off.min(trial.gate(offsets, frame, label)).powi(2);
     }
     squares / total(trial, frame) + out(trial, offsets, frame, source)
 }
@@ -322,7 +320,8 @@ fn out(trial: &Trial<'_>, offsets: &Offsets, frame: usize, source: &Option<Sourc
     let mut given = vec![false; trial.count];
     source.iter().flatten().for_each(|&label| given[label] = true);
     let labels = (0..trial.count).filter(|&l| !given[l] && trial.row(frame)[l].is_some());
-    let squares = labels.map(|l| trial.tracker.markers.placed[l].weight * trial.gate(offsets, frame, l).powi(2));
+    let squares = labels
+        .map(|l| trial.tracker.markers.placed[l].weight * trial.gate(offsets, frame, l).powi(2));
     squares.sum::<f64>() / total(trial, frame)
 }
 

@@ -1,7 +1,7 @@
 //! A recording with its answers, frame by frame, as the search for faults changes them.
 
-use super::offsets::Offsets;
 use super::Source;
+use super::offsets::Offsets;
 use crate::answer::{FrameAnswer, FrameStatus};
 use crate::recorded::Recorded;
 use crate::tracker::{Scratch, Tracker};
@@ -84,6 +84,28 @@ impl<'a> Trial<'a> {
         self.row(frame)[self.label(frame, marker)?]?;
         let residual = self.residuals[frame * self.count + marker];
         residual.is_finite().then_some(residual)
+    }
+
+    /// Frame and label of all that are more than so many gates from where they are used; `throughout`
+    /// gives the labels of what is seen here.
+    pub(super) fn far(
+        &self,
+        offsets: &Offsets,
+        gates: f64,
+        throughout: &[usize],
+    ) -> Vec<(usize, usize)> {
+        let mut far = vec![];
+        for frame in 0..self.frames {
+            for (marker, &place) in self.places(frame).iter().enumerate() {
+                let Some(label) = self.label(frame, marker) else { continue };
+                let Some(seen) = self.row(frame)[label] else { continue };
+                let off = (Vec3::from(seen) - place).norm();
+                if off > gates * self.gate(offsets, frame, label) {
+                    far.push((frame, throughout.get(label).map_or(label, |&label| label)));
+                }
+            }
+        }
+        far
     }
 
     /// Measures residuals and places of all frames again.

@@ -48,7 +48,8 @@ impl Placed {
         let (off, axes) = (seen - frame.translation, frame.linear);
         let rows = [axes.y.cross(axes.z), axes.z.cross(axes.x), axes.x.cross(axes.y)];
         let volume = axes.x.dot(rows[0]);
-        Vec3::new(rows[0].dot(off), rows[1].dot(off), rows[2].dot(off)) * (1.0 / volume) - self.point
+        Vec3::new(rows[0].dot(off), rows[1].dot(off), rows[2].dot(off)) * (1.0 / volume)
+            - self.point
     }
 
     /// Whether it belongs to the world, which no coordinate moves.

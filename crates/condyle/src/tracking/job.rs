@@ -1,6 +1,6 @@
 //! One recording on its way through a tracker.
 
-use super::{LeftOut, Request, Swap, Tracking};
+use super::{Faulty, Request, Swap, Tracking};
 use crate::matching::match_markers;
 use condyle_diagnostics::{Diagnostic, Error};
 use condyle_model::Model;
@@ -91,21 +91,22 @@ impl<'a> Job<'a> {
         } else {
             Repairs::default()
         };
-        let mut answers = self.pass(&Corrected { recorded: &recorded, repairs: &repairs }, &mut progress);
-        let (mut swaps, mut left_out) = (vec![], vec![]);
+        let mut answers =
+            self.pass(&Corrected { recorded: &recorded, repairs: &repairs }, &mut progress);
+        let (mut swaps, mut faulty) = (vec![], vec![]);
         if self.robust {
             let repairs = self.repaired(&recorded, repairs, &mut answers, &mut progress);
-            let (exchanged, out) = robust::describe(&recorded, &repairs, self.frames.len());
+            let (exchanged, found) = robust::describe(&recorded, &repairs, self.frames.len());
             let name = |marker: usize| self.recording.labels[self.labels[marker]].clone();
             let frames = |range: Range<usize>| first + range.start..first + range.end;
             swaps.extend(exchanged.into_iter().map(|e| Swap {
                 labels: e.cycle.into_iter().map(name).collect(),
                 frames: frames(e.frames),
             }));
-            left_out.extend(out.into_iter().map(|l| LeftOut {
-                label: name(l.marker),
-                frames: frames(l.frames),
-                fault: l.fault,
+            faulty.extend(found.into_iter().map(|f| Faulty {
+                label: name(f.marker),
+                frames: frames(f.frames),
+                fault: f.fault,
             }));
         }
         let motion = Motion {
@@ -113,8 +114,9 @@ impl<'a> Job<'a> {
             frames: answers.iter().map(|a| a.coordinates.clone()).collect(),
         };
         let (markers, labels) = (self.markers.clone(), self.labels.clone());
-        let (frames, warnings) = (self.frames.clone(), self.warnings.clone());
-        Tracking { motion, answers, markers, labels, frames, warnings, swaps, left_out }
+        let (frames, mut warnings) = (self.frames.clone(), self.warnings.clone());
+        warnings.extend(self.robust.then(|| few_frames(frames.len())).flatten());
+        Tracking { motion, answers, markers, labels, frames, warnings, swaps, faulty }
     }
 
     /// Finds faults and tracks what they touch again.
@@ -169,6 +171,16 @@ fn unused_tasks(weights: &HashMap<String, f64>, markers: &[String]) -> Option<Di
     let list = unused.join(", ");
     let message = format!("tasks for markers that are not in both model and recording: {list}");
     (!unused.is_empty()).then(|| Diagnostic::warning("track/unused-task", message))
+}
+
+/// A warning about a recording in which faults can hardly be told from constant offsets.
+fn few_frames(frames: usize) -> Option<Diagnostic> {
+    let message = format!(
+        "{frames} frames are too few to know how markers lie on the model: only those off by more than \
+         150 mm count as faults"
+    );
+    let said = || Diagnostic::warning("track/unknown-offsets", message);
+    (frames < robust::FEWEST_FRAMES).then(said)
 }
 
 fn no_common_markers(model: &Model, recording: &Recording) -> Error {

@@ -8,11 +8,11 @@ mod job;
 mod report;
 mod request;
 
+pub use condyle_track::robust::Fault;
 pub use condyle_track::{
     CoordinateTarget, FrameAnswer, FrameStatus, MarkerTarget, OrientationTarget, PostureTarget,
     Rules, Scratch, Stream, Targets, Tracker, Wanted,
 };
-pub use condyle_track::robust::Fault;
 pub use job::Job;
 pub use report::{FailedFrame, MarkerErrors, Report, Summary};
 pub use request::{CoordinateRequest, CoordinateValue, PostureRequest, Request};
@@ -40,8 +40,9 @@ pub struct Tracking {
     pub warnings: Vec<Diagnostic>,
     /// Labels that were exchanged and put right, by frame range (robust tracking only).
     pub swaps: Vec<Swap>,
-    /// Labels that were left out, by frame range (robust tracking only).
-    pub left_out: Vec<LeftOut>,
+    /// Labels that were left out, or stray and could not be put right, by frame range (robust tracking
+    /// only).
+    pub faulty: Vec<Faulty>,
 }
 
 /// Labels that are exchanged over some frames.
@@ -64,9 +65,9 @@ impl fmt::Display for Swap {
     }
 }
 
-/// A label that is left out over some frames.
+/// A label at which something is the matter over some frames.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LeftOut {
+pub struct Faulty {
     /// The label.
     pub label: String,
     /// Frames of the recording, from 0.
@@ -75,11 +76,14 @@ pub struct LeftOut {
     pub fault: Fault,
 }
 
-impl fmt::Display for LeftOut {
+impl fmt::Display for Faulty {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { label, frames, fault } = self;
-        let fault = fault.name();
-        write!(f, "label `{label}` is {fault} in {}: left out", span(frames))
+        let (fault, span) = (fault.name(), span(frames));
+        match self.fault.is_left_out() {
+            true => write!(f, "label `{label}` is {fault} in {span}: left out"),
+            false => write!(f, "label `{label}` strays in {span}: {fault}, used as it is"),
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Numbers about a whole tracking.
 
-use super::{LeftOut, Swap, Tracking};
+use super::{Faulty, Swap, Tracking};
 use condyle_model::{CoordinateId, Model};
 use condyle_track::{FrameAnswer, FrameStatus};
 
@@ -60,8 +60,8 @@ pub struct Report {
     pub mostly_at_limit: Vec<String>,
     /// Labels that were exchanged and put right.
     pub swaps: Vec<Swap>,
-    /// Labels that were left out.
-    pub left_out: Vec<LeftOut>,
+    /// Labels that were left out, or stray and could not be put right.
+    pub faulty: Vec<Faulty>,
     /// The markers used.
     pub markers: Vec<MarkerErrors>,
 }
@@ -99,7 +99,7 @@ impl Tracking {
             iterations: self.answers.iter().map(|a| u64::from(a.iterations)).sum(),
             mostly_at_limit: mostly.map(|(id, _)| model.coordinate_key(id)).collect(),
             swaps: self.swaps.clone(),
-            left_out: self.left_out.clone(),
+            faulty: self.faulty.clone(),
             markers: self.marker_errors(),
         }
     }
