@@ -15,6 +15,9 @@ const SOLVED: usize = 8;
 const DISTANCES: f64 = 0.5;
 /// What is minimised must fall below this share.
 const FIT: f64 = 0.8;
+/// The exchanged labels must then be this near to their markers, RMS, in metres: where a model is not
+/// scaled to its person, markers of one segment may be nearer to each other's places by chance.
+const LEFT: f64 = 0.040;
 /// A label nearer to its marker than this, in metres, is in place.
 const IN_PLACE: f64 = 0.020;
 
@@ -68,14 +71,19 @@ pub fn exchanged_throughout(
     }
     let mut exchanged = repairs.clone();
     exchanged.exchange(&labels);
-    let (mut before, mut after) = (0.0, 0.0);
+    let (mut before, mut after, mut squares, mut n) = (0.0, 0.0, 0.0, 0.0);
     for frame in (0..frames).step_by(frames.div_ceil(SOLVED).max(1)) {
         Corrected { recorded, repairs: &exchanged }.positions(frame, &mut seen);
         let again = tracker.solve_frame(scratch, &seen, frame, &answers[frame].coordinates);
         before += answers[frame].minimised();
         after += again.minimised();
+        let errors = again.marker_errors.iter().enumerate();
+        for (_, error) in errors.filter(|(m, e)| labels[*m] != *m && e.is_finite()) {
+            squares += error * error;
+            n += 1.0;
+        }
     }
-    let better = after < FIT * before;
+    let better = after < FIT * before && squares <= LEFT * LEFT * n;
     if better {
         *repairs = exchanged;
     }

@@ -16,6 +16,7 @@ use super::assignment::assign;
 use super::offsets::Offsets;
 use super::trial::Trial;
 use crate::answer::{FrameAnswer, FrameStatus, better};
+use crate::sequence::FIRST_GUESSES;
 use crate::tracker::Scratch;
 use condyle_math::Vec3;
 use condyle_model::Mode;
@@ -182,6 +183,11 @@ impl Candidate {
             self.rejected += 1;
             return false;
         }
+        let (source, answer) =
+            match self.as_it_is(trial, scratch, offsets, frame, near[0], &source, found) {
+                Some(again) => (None, again),
+                None => (source, answer),
+            };
         self.rejected = 0;
         let before = std::mem::replace(&mut trial.answers[frame], answer);
         trial.plain[frame].get_or_insert(before);
@@ -192,6 +198,34 @@ impl Candidate {
             trial.measure_at(scratch, Some(offsets), frame);
         }
         true
+    }
+
+    /// Where faults begin: the answer of the frame as it is from first guesses, if that fits nearly as
+    /// well. The frames so far may have been in a wrong minimum, which no label is to blame for.
+    #[expect(clippy::too_many_arguments)]
+    fn as_it_is(
+        &mut self,
+        trial: &Trial<'_>,
+        scratch: &mut Scratch,
+        offsets: &Offsets,
+        frame: usize,
+        near: Option<usize>,
+        source: &Option<Source>,
+        found: f64,
+    ) -> Option<FrameAnswer> {
+        if source.is_none() || near.is_some_and(|near| trial.sources[near].is_some()) {
+            return None;
+        }
+        let row = trial.row(frame);
+        let again = trial.tracker.solve_first(scratch, row, frame, FIRST_GUESSES);
+        let pose = &mut scratch.buffers.pose;
+        trial.tracker.program.evaluate(&again.coordinates, Mode::Open, pose).ok()?;
+        self.expected.clear();
+        let placed = trial.tracker.markers.placed.iter().zip(&offsets.offsets);
+        self.expected.extend(placed.map(|(placed, &offset)| placed.beside(pose, offset)));
+        let as_it_is = cost(trial, offsets, frame, &None, &self.expected) + beside(trial, &again);
+        let enough = found + needed(trial, offsets, frame, source, found);
+        (as_it_is < enough && better(&again, &trial.answers[frame])).then_some(again)
     }
 }
 
