@@ -12,6 +12,7 @@
 //! of what is left: no marker is weighed down.
 
 mod assignment;
+mod cost;
 mod exchange;
 mod faults;
 mod offsets;
@@ -25,15 +26,20 @@ pub use offsets::FEWEST_FRAMES;
 use crate::answer::FrameAnswer;
 use crate::recorded::Recorded;
 use crate::tracker::{Scratch, Tracker};
-use offsets::Offsets;
+use search::Search;
 use std::collections::BTreeMap;
 use trial::Trial;
 
 /// For each marker target the one whose recorded position it gets; `None` if it gets none.
-pub type Source = Vec<Option<usize>>;
+type Source = Vec<Option<usize>>;
 
 /// How often offsets are taken again after faults were put right.
 const ROUNDS: usize = 3;
+/// Where even in the better quarter of frames half of the markers are farther off than this, in metres,
+/// recording and model do not belong together, and no label alone is to blame.
+const WORST: f64 = 0.150;
+/// A label this many gates from its offset that is used all the same is told.
+const UNRESOLVED: f64 = 2.0;
 
 /// What is changed in a recording.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -64,11 +70,6 @@ impl Repairs {
             }
         }
         repairs
-    }
-
-    /// Whether nothing is changed.
-    pub fn is_empty(&self) -> bool {
-        self.lost.is_empty() && self.throughout.is_empty() && self.frames.is_empty()
     }
 
     /// The labels of `count` markers in a frame; `None` if each has its own.
@@ -118,7 +119,7 @@ impl Recorded for Corrected<'_> {
 }
 
 /// Finds faults, from the answers of a tracking of the recording with `repairs`, which get them added.
-/// The answers become those of the repaired frames.
+/// The answers become those of the repaired frames; all others stay as they are.
 pub fn find(
     tracker: &Tracker,
     scratch: &mut Scratch,
@@ -126,35 +127,34 @@ pub fn find(
     repairs: &mut Repairs,
     answers: &mut Vec<FrameAnswer>,
 ) {
-    repairs.frames.clear();
-    let mut trial = Trial::new(tracker, &Corrected { recorded, repairs }, answers);
-    trial.measure(scratch, None);
     // Faults make a frame fit worse, so offsets are first taken where it fits well.
-    let all: Vec<usize> = (0..trial.frames).collect();
-    let mut frames = all.clone();
-    frames.sort_by(|&a, &b| trial.answers[a].minimised().total_cmp(&trial.answers[b].minimised()));
-    frames.truncate(trial.frames.div_ceil(2).max(FEW.min(trial.frames)));
-    let mut offsets = Offsets::of(&trial, &frames);
-    trial.measure(scratch, Some(&offsets));
-    for _ in 0..ROUNDS {
-        if !search::search(&mut trial, scratch, &offsets) {
+    let all: Vec<usize> = (0..answers.len()).collect();
+    let mut good = all.clone();
+    good.sort_by(|&a, &b| answers[a].minimised().total_cmp(&answers[b].minimised()));
+    let middle = |frame: &usize| {
+        let errors = answers[*frame].marker_errors.iter().filter(|e| e.is_finite());
+        offsets::median(&mut errors.copied().collect::<Vec<_>>())
+    };
+    if good.get(good.len() / 4).is_some_and(|frame| middle(frame) > WORST) {
+        return;
+    }
+    good.truncate(good.len().div_ceil(2).max(2 * FEWEST_FRAMES));
+    let corrected = Corrected { recorded, repairs };
+    let trial = Trial::new(tracker, scratch, &corrected, std::mem::take(answers));
+    let mut search = Search::new(trial, scratch);
+    search.take_offsets(&good);
+    for round in 0..ROUNDS {
+        if !search.run(round) {
             break;
         }
-        offsets = Offsets::of(&trial, &all);
-        trial.measure(scratch, Some(&offsets));
+        search.take_offsets(&all);
     }
-    search::take_back(&mut trial, scratch, &offsets);
-    repairs.unresolved = trial.far(&offsets, UNRESOLVED, &repairs.throughout);
-    for (frame, source) in trial.sources.into_iter().enumerate() {
-        if let Some(source) = source {
-            repairs.frames.insert(frame, source);
-        }
-    }
+    search.take_back();
+    let trial = search.trial;
+    let throughout = |label: usize| repairs.throughout.get(label).map_or(label, |&label| label);
+    let far = trial.far(UNRESOLVED).into_iter();
+    repairs.unresolved = far.map(|(frame, label)| (frame, throughout(label))).collect();
+    let sources = trial.sources.into_iter().enumerate();
+    repairs.frames = sources.filter_map(|(frame, source)| Some((frame, source?))).collect();
     *answers = trial.answers;
 }
-
-/// A label this many gates from its offset that is used all the same is told.
-const UNRESOLVED: f64 = 2.0;
-
-/// Of a shorter trial all frames count.
-const FEW: usize = 24;

@@ -23,16 +23,22 @@ pub(super) struct Offsets {
 }
 
 impl Offsets {
+    /// No offsets, and gates for such.
+    pub(super) fn unknown(markers: usize) -> Self {
+        Self { offsets: vec![Vec3::ZERO; markers], gates: vec![UNKNOWN_GATE; markers] }
+    }
+
     /// Medians over the frames given, axis by axis.
     pub(super) fn of(trial: &Trial<'_>, frames: &[usize]) -> Self {
         let (mut offsets, mut gates) = (vec![], vec![]);
         let (mut residuals, mut sorted) = (vec![], vec![]);
-        for marker in 0..trial.count {
+        for (marker, placed) in trial.tracker.markers.placed.iter().enumerate() {
             residuals.clear();
             residuals.extend(frames.iter().filter_map(|&frame| trial.residual(frame, marker)));
-            if residuals.len() < FEWEST_FRAMES {
+            if residuals.len() < FEWEST_FRAMES || placed.weight <= 0.0 {
                 offsets.push(Vec3::ZERO);
-                gates.push(UNKNOWN_GATE);
+                // A marker of no weight has no fault.
+                gates.push(if placed.weight > 0.0 { UNKNOWN_GATE } else { f64::INFINITY });
                 continue;
             }
             let axis = |of: fn(&Vec3) -> f64, sorted: &mut Vec<f64>| {
