@@ -188,7 +188,7 @@ fn a_frame_alone_is_changed_only_by_what_is_far_off() {
     };
     let (plain, robust) = (run(&model, &one, false), run(&model, &one, true));
     assert_eq!(plain.motion, robust.motion);
-    let said: Vec<&str> = robust.warnings.iter().map(|w| w.code.as_ref()).collect();
+    let said: Vec<&str> = robust.warnings.iter().map(|w| w.code).collect();
     assert_eq!(said, ["track/unknown-offsets"]);
     let name = clean.labels[5].clone();
     set(&mut one, &name, 0..1, |place| place + Vec3::Y * 0.5);

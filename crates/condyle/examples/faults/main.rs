@@ -13,11 +13,14 @@
 //!   50 mm off and in those beyond the fault, of the rotations that stay within 1° there if these labels
 //!   are taken out by hand.
 
+mod fault;
+
 use condyle::formats::Recording;
 use condyle::math::Vec3;
 use condyle::model::Mode;
 use condyle::tracking::{Faulty, Job, Request, Tracking};
 use condyle::{CoordinateId, CoordinateKind, Model, Observed, open};
+use fault::{Dice, Fault, KINDS};
 use std::collections::HashSet;
 use std::error::Error;
 use std::ops::Range;
@@ -260,64 +263,6 @@ fn generate(trial: &Trial) -> Result<Trial, Box<dyn Error>> {
     Ok(Trial { name, model: trial.model.clone(), recording, request })
 }
 
-/// A fault written into a recording.
-struct Fault {
-    kind: &'static str,
-    labels: Vec<usize>,
-    frames: Range<usize>,
-}
-
-const KINDS: [&str; 8] =
-    ["1 pair", "2 pairs", "3 pairs", "4 pairs", "three-cycle", "ghost", "frozen", "at 0 0 0"];
-
-impl Fault {
-    /// From one frame to half of the trial, anywhere in it; lengths are spread over their logarithm.
-    fn cast(kind: &'static str, used: &[usize], frames: usize, dice: &mut Dice) -> Self {
-        let length = ((frames as f64 / 2.0).powf(dice.even()) as usize).max(1);
-        let start = dice.below(frames - length + 1);
-        let count = match kind {
-            "1 pair" => 2,
-            "2 pairs" => 4,
-            "3 pairs" => 6,
-            "4 pairs" => 8,
-            "three-cycle" => 3,
-            _ => 1,
-        };
-        let mut labels = vec![];
-        while labels.len() < count.min(used.len() / 2 * 2) {
-            let label = used[dice.below(used.len())];
-            if !labels.contains(&label) {
-                labels.push(label);
-            }
-        }
-        Self { kind, labels, frames: start..start + length }
-    }
-
-    fn write(&self, recording: &mut Recording, dice: &mut Dice) {
-        let width = recording.labels.len();
-        let away = dice.vector();
-        let away = away * ((0.06 + 0.44 * dice.even()) / away.norm());
-        let frozen = recording.positions[self.frames.start * width + self.labels[0]];
-        for frame in self.frames.clone() {
-            let row = &mut recording.positions[frame * width..(frame + 1) * width];
-            match self.kind {
-                "three-cycle" => {
-                    row.swap(self.labels[0], self.labels[1]);
-                    row.swap(self.labels[1], self.labels[2]);
-                }
-                "ghost" => {
-                    let place = row[self.labels[0]].position();
-                    let moved = place.map(|p| (Vec3::from(p) + away).to_array());
-                    row[self.labels[0]] = Observed::from(moved);
-                }
-                "frozen" => row[self.labels[0]] = frozen,
-                "at 0 0 0" => row[self.labels[0]] = Observed::from([0.0; 3]),
-                _ => self.labels.chunks_exact(2).for_each(|pair| row.swap(pair[0], pair[1])),
-            }
-        }
-    }
-}
-
 /// Counts over the faults of one kind.
 #[derive(Default, Clone)]
 struct Tally {
@@ -531,28 +476,4 @@ fn enough<'a>(off: &[usize], found: impl Iterator<Item = &'a Range<usize>>) -> b
     let found: Vec<_> = found.collect();
     let covered = off.iter().filter(|frame| found.iter().any(|range| range.contains(frame)));
     10 * covered.count() >= 9 * off.len()
-}
-
-/// SplitMix64 (Steele, Lea & Flood 2014): the same numbers everywhere.
-struct Dice(u64);
-
-impl Dice {
-    /// Uniform in [0, 1).
-    fn even(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        (self.even() * n as f64) as usize
-    }
-
-    /// Three numbers with mean 0 and deviation 1: sums of twelve.
-    fn vector(&mut self) -> Vec3 {
-        let mut normal = || (0..12).map(|_| self.even()).sum::<f64>() - 6.0;
-        Vec3::new(normal(), normal(), normal())
-    }
 }
