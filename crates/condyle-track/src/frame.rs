@@ -2,7 +2,6 @@
 
 use crate::answer::{FrameAnswer, FrameStatus, better};
 use crate::problem::Frame;
-use crate::robust;
 use crate::tracker::{Scratch, Tracker};
 use condyle_math::Vec3;
 use condyle_model::{CoordinateId, CoordinateKind, Mode};
@@ -149,8 +148,7 @@ impl Tracker {
         }
     }
 
-    /// A descent from the posture in `answer`, keeping the solver's active set of the last one; where
-    /// asked, repeated with markers weighed down that the others contradict.
+    /// A descent from the posture in `answer`, keeping the solver's active set of the last one.
     fn descend(
         &self,
         scratch: &mut Scratch,
@@ -159,35 +157,26 @@ impl Tracker {
         answer: &mut FrameAnswer,
     ) {
         let Scratch { solver, buffers } = scratch;
-        let mut spent = 0;
-        for round in 0..=if self.rules.robust { robust::ROUNDS } else { 0 } {
-            if round > 0 {
-                robust::factors(&answer.marker_errors, &mut buffers.factors);
-            }
-            buffers.current.copy_from_slice(&answer.coordinates);
-            self.hold(&mut buffers.current);
-            buffers.tangent.fill(0.0);
-            let mut frame = Frame { tracker: self, seen, index, buffers };
-            frame.weigh(round > 0);
-            let some_seen = frame.buffers.total_weight > 0.0;
-            answer.status = FrameStatus::NoMarkers;
-            if some_seen || self.targets.stand_without_markers() {
-                let tolerance = self.rules.tolerance;
-                let stopping = least_squares::Stopping { tolerance, ..Default::default() };
-                let summary = solver.minimise(&mut frame, &stopping);
-                spent += summary.iterations;
-                answer.status = match summary.stop {
-                    _ if !some_seen && !self.targets.orient(index) => FrameStatus::NoMarkers,
-                    Stop::Converged => FrameStatus::Solved,
-                    Stop::Infeasible => FrameStatus::Infeasible,
-                    Stop::Stalled | Stop::IterationLimit | Stop::NotFinite => {
-                        FrameStatus::Uncertain
-                    }
-                };
-            }
-            frame.measure(answer);
-            answer.iterations = spent;
+        buffers.current.copy_from_slice(&answer.coordinates);
+        self.hold(&mut buffers.current);
+        buffers.tangent.fill(0.0);
+        let mut frame = Frame { tracker: self, seen, index, buffers };
+        frame.weigh();
+        let some_seen = frame.buffers.total_weight > 0.0;
+        (answer.status, answer.iterations) = (FrameStatus::NoMarkers, 0);
+        if some_seen || self.targets.stand_without_markers() {
+            let tolerance = self.rules.tolerance;
+            let stopping = least_squares::Stopping { tolerance, ..Default::default() };
+            let summary = solver.minimise(&mut frame, &stopping);
+            answer.iterations = summary.iterations;
+            answer.status = match summary.stop {
+                _ if !some_seen && !self.targets.orient(index) => FrameStatus::NoMarkers,
+                Stop::Converged => FrameStatus::Solved,
+                Stop::Infeasible => FrameStatus::Infeasible,
+                Stop::Stalled | Stop::IterationLimit | Stop::NotFinite => FrameStatus::Uncertain,
+            };
         }
+        frame.measure(answer);
     }
 
     /// Puts locked coordinates at their defaults and the others within their bounds.

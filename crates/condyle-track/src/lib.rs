@@ -24,7 +24,7 @@
 //! | [`FrameAnswer`] | one frame: posture, fit, status |
 //! | [`Stream`] | frames as they come |
 //! | [`sequence`] | many frames: cut, solve a chunk, stitch |
-//! | [`robust`] | faulty markers: weighed down, swapped labels found |
+//! | [`robust`] | faulty markers: left out, exchanged labels put right |
 //!
 //! ```
 //! use condyle_math::Vec3;

@@ -33,8 +33,6 @@ pub(crate) struct Buffers {
     pub points: Vec<Vec3>,
     pub errors: Vec<Vec3>,
     pub total_weight: f64,
-    /// Factors of the weights where markers are weighed down.
-    pub factors: Vec<f64>,
     /// For each group of markers.
     pub moments: Vec<Moments>,
     /// For each motion of a group of markers.
@@ -43,13 +41,12 @@ pub(crate) struct Buffers {
 
 impl Frame<'_> {
     /// Weighs the markers of the frame: zero where one is not seen.
-    pub(crate) fn weigh(&mut self, by_factors: bool) {
-        let Buffers { weights, total_weight, factors, .. } = &mut *self.buffers;
+    pub(crate) fn weigh(&mut self) {
+        let Buffers { weights, total_weight, .. } = &mut *self.buffers;
         *total_weight = 0.0;
         for (i, marker) in self.tracker.markers.placed.iter().enumerate() {
             let seen = self.seen.get(i).copied().flatten().is_some();
-            let factor = if by_factors { factors[i] } else { 1.0 };
-            weights[i] = if seen { marker.weight * factor } else { 0.0 };
+            weights[i] = if seen { marker.weight } else { 0.0 };
             *total_weight += weights[i];
         }
     }
@@ -72,7 +69,7 @@ impl Frame<'_> {
         let evaluated = tracker.program.evaluate(current, Mode::Open, pose);
         debug_assert!(evaluated.is_ok(), "buffers are made for this program");
         closures.update(&tracker.model, &tracker.program, pose, None);
-        self.weigh(false);
+        self.weigh();
         let sums = target::measure(self);
         let Buffers { pose, closures, weights, errors, .. } = &*self.buffers;
         answer.coordinates.clear();

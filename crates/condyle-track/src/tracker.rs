@@ -18,13 +18,11 @@ pub struct Rules {
     pub limits: bool,
     /// Stop a frame when the model promises to lower what is minimised by less than this fraction of it.
     pub tolerance: f64,
-    /// Weigh markers down that are far off where the others agree.
-    pub robust: bool,
 }
 
 impl Default for Rules {
     fn default() -> Self {
-        Self { limits: true, tolerance: 1e-6, robust: false }
+        Self { limits: true, tolerance: 1e-6 }
     }
 }
 
@@ -163,7 +161,6 @@ impl Scratch {
                 points: vec![Vec3::ZERO; markers],
                 errors: vec![Vec3::ZERO; markers],
                 total_weight: 0.0,
-                factors: Vec::with_capacity(markers),
                 moments: vec![Moments::ZERO; tracker.markers.groups.len()],
                 levers: Vec::with_capacity(tracker.unknown_len()),
             },

@@ -220,13 +220,7 @@ fn table(runs: [(&Tracking, &Closeness, f64); 2]) -> String {
 fn findings(model: &Model, robust: &Tracking, off: &Closeness) -> String {
     let mut text = String::from("\n");
     for swap in &robust.swaps {
-        text.push_str(&format!(
-            "  Found: labels {} and {} stand for each other's marker in frames {} to {}.\n",
-            swap.labels[0],
-            swap.labels[1],
-            swap.frames.start,
-            swap.frames.end - 1
-        ));
+        text.push_str(&format!("  Found: {swap}.\n"));
     }
     let failed = robust.summary().failed.len();
     text.push_str(&format!(

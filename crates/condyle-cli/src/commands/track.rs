@@ -7,7 +7,7 @@ use crate::output;
 use crate::progress::frames_bar;
 use clap::Args;
 use condyle::formats::{Recording, csv};
-use condyle::tracking::{Job, MarkerErrors, Report, Request, Tracking};
+use condyle::tracking::{Faulty, Job, MarkerErrors, Report, Request, Tracking};
 use condyle::{Model, open};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -42,7 +42,7 @@ pub(crate) struct Track {
     /// Hold coordinates to their enforced ranges.
     #[arg(long, value_enum, default_value_t = Limits::On)]
     limits: Limits,
-    /// Detect swapped labels, and reduce the weight of markers that contradict the others.
+    /// Put swapped labels right, and leave markers out where they cannot be.
     #[arg(long)]
     robust: bool,
     /// The report as one JSON document on standard output.
@@ -167,6 +167,14 @@ fn json(trial: &Path, report: &Report, seconds: f64) -> Value {
     let swaps = report.swaps.iter().map(
         |swap| json!({ "labels": swap.labels, "frames": [swap.frames.start, swap.frames.end] }),
     );
+    let faulty = |left_out: bool| -> Vec<Value> {
+        let wanted = report.faulty.iter().filter(|f| f.fault.is_left_out() == left_out);
+        let one = |f: &Faulty| {
+            let frames = [f.frames.start, f.frames.end];
+            json!({ "label": f.label, "frames": frames, "fault": f.fault.name() })
+        };
+        wanted.map(one).collect()
+    };
     json!({
         "trial": trial.to_string_lossy(),
         "frames": s.frames,
@@ -182,6 +190,8 @@ fn json(trial: &Path, report: &Report, seconds: f64) -> Value {
         "iterations": report.iterations,
         "mostly_at_limit": report.mostly_at_limit,
         "swapped_labels": swaps.collect::<Vec<_>>(),
+        "left_out": faulty(true),
+        "not_resolved": faulty(false),
         "markers": markers,
     })
 }
@@ -212,13 +222,10 @@ fn print_summary(
     let rows: Vec<Vec<String>> = worst.iter().take(3).map(row).collect();
     text.push_str(&output::columns(&rows));
     for swap in &report.swaps {
-        text.push_str(&format!(
-            "  labels `{}` and `{}` are swapped in frames {} to {}\n",
-            swap.labels[0],
-            swap.labels[1],
-            swap.frames.start,
-            swap.frames.end - 1
-        ));
+        text.push_str(&format!("  {swap}\n"));
+    }
+    for faulty in &report.faulty {
+        text.push_str(&format!("  {faulty}\n"));
     }
     if let [first, ..] = s.failed[..] {
         text.push_str(&format!(

@@ -35,6 +35,27 @@ impl Placed {
     pub(crate) fn at(&self, pose: &Pose) -> Vec3 {
         pose.frame(self.segment) * self.point
     }
+
+    /// Where a point of its segment is that lies off it by `offset`, in the segment's axes.
+    pub(crate) fn beside(&self, pose: &Pose, offset: Vec3) -> Vec3 {
+        pose.frame(self.segment) * (self.point + offset)
+    }
+
+    /// How far a point of the world lies off it, in the segment's axes; not finite where the segment
+    /// is flat.
+    pub(crate) fn offset_to(&self, pose: &Pose, seen: Vec3) -> Vec3 {
+        let frame = pose.frame(self.segment);
+        let (off, axes) = (seen - frame.translation, frame.linear);
+        let rows = [axes.y.cross(axes.z), axes.z.cross(axes.x), axes.x.cross(axes.y)];
+        let volume = axes.x.dot(rows[0]);
+        Vec3::new(rows[0].dot(off), rows[1].dot(off), rows[2].dot(off)) * (1.0 / volume)
+            - self.point
+    }
+
+    /// Whether it belongs to the world, which no coordinate moves.
+    pub(crate) fn of_world(&self) -> bool {
+        self.segment.is_none()
+    }
 }
 
 /// The markers of one segment: which unknowns move them.

@@ -118,7 +118,7 @@ fn of_kind(
     tracker.program.evaluate_with_jacobian(stored, pose, jacobian).unwrap();
     buffers.closures.update(&tracker.model, &tracker.program, pose, Some(jacobian));
     let mut frame = Frame { tracker, seen, index: 0, buffers };
-    frame.weigh(false);
+    frame.weigh();
     let mut local = scratch.solver.local().clone();
     local.hessian.fill(0.0);
     let (part, target) = kinds(tracker).into_iter().nth(kind).unwrap();

@@ -1,11 +1,11 @@
 //! One recording on its way through a tracker.
 
-use super::{Request, Swap, Tracking};
+use super::{Faulty, Request, Swap, Tracking};
 use crate::matching::match_markers;
 use condyle_diagnostics::{Diagnostic, Error};
 use condyle_model::Model;
 use condyle_motion::{Motion, Recording};
-use condyle_track::robust::{self, Corrected};
+use condyle_track::robust::{self, Corrected, Repairs};
 use condyle_track::{
     FrameAnswer, MarkerTarget, Recorded, Rules, Scratch, Targets, Tracker, sequence,
 };
@@ -65,7 +65,7 @@ impl<'a> Job<'a> {
         let weight = request.closure_weight;
         targets.closure_weight = weight.is_finite().then_some(weight);
         let (threads, robust) = (request.threads, request.robust);
-        let rules = Rules { limits: request.limits, robust, ..Rules::default() };
+        let rules = Rules { limits: request.limits, ..Rules::default() };
         let tracker = Arc::new(Tracker::new(model, targets, rules));
         Ok(Self { tracker, recording, markers, labels, frames, warnings, threads, robust })
     }
@@ -75,8 +75,8 @@ impl<'a> Job<'a> {
         &self.tracker
     }
 
-    /// Tracks all frames; with a robust request, once more with exchanged labels put right.
-    /// `progress` is called with the number of frames that are done and their total.
+    /// Tracks all frames; with a robust request, faults are found and the frames that they touch tracked
+    /// again. `progress` is called with the number of frames that are done and their total.
     ///
     /// Frames that cannot be solved are marked in their answer.
     pub fn run(&self, mut progress: &mut (dyn FnMut(usize, usize) + Send)) -> Tracking {
@@ -86,20 +86,27 @@ impl<'a> Job<'a> {
             seen.clear();
             seen.extend(self.labels.iter().map(|&label| row.get(label)?.position()));
         };
-        let mut answers = self.pass(&recorded, &mut progress);
-        let mut swaps = vec![];
+        let repairs = if self.robust {
+            Repairs::of_origin(&self.tracker, &recorded, self.frames.len())
+        } else {
+            Repairs::default()
+        };
+        let mut answers =
+            self.pass(&Corrected { recorded: &recorded, repairs: &repairs }, &mut progress);
+        let (mut swaps, mut faulty) = (vec![], vec![]);
         if self.robust {
-            let mut scratch = Scratch::new(&self.tracker);
-            let exchanged =
-                robust::find_exchanged(&self.tracker, &mut scratch, &recorded, &answers);
-            if !exchanged.is_empty() {
-                let corrected = Corrected { recorded: &recorded, exchanged: &exchanged };
-                answers = self.pass(&corrected, &mut progress);
-            }
+            let repairs = self.repaired(&recorded, repairs, &mut answers, &mut progress);
+            let (exchanged, found) = robust::describe(&recorded, &repairs, self.frames.len());
             let name = |marker: usize| self.recording.labels[self.labels[marker]].clone();
-            swaps.extend(exchanged.iter().map(|e| Swap {
-                labels: e.markers.map(name),
-                frames: first + e.frames.start..first + e.frames.end,
+            let frames = |range: Range<usize>| first + range.start..first + range.end;
+            swaps.extend(exchanged.into_iter().map(|e| Swap {
+                labels: e.cycle.into_iter().map(name).collect(),
+                frames: frames(e.frames),
+            }));
+            faulty.extend(found.into_iter().map(|f| Faulty {
+                label: name(f.marker),
+                frames: frames(f.frames),
+                fault: f.fault,
             }));
         }
         let motion = Motion {
@@ -107,8 +114,26 @@ impl<'a> Job<'a> {
             frames: answers.iter().map(|a| a.coordinates.clone()).collect(),
         };
         let (markers, labels) = (self.markers.clone(), self.labels.clone());
-        let (frames, warnings) = (self.frames.clone(), self.warnings.clone());
-        Tracking { motion, answers, markers, labels, frames, warnings, swaps }
+        let (frames, mut warnings) = (self.frames.clone(), self.warnings.clone());
+        warnings.extend(self.robust.then(|| few_frames(frames.len())).flatten());
+        Tracking { motion, answers, markers, labels, frames, warnings, swaps, faulty }
+    }
+
+    /// Finds faults and tracks what they touch again.
+    fn repaired(
+        &self,
+        recorded: &dyn Recorded,
+        mut repairs: Repairs,
+        answers: &mut Vec<FrameAnswer>,
+        progress: &mut &mut (dyn FnMut(usize, usize) + Send),
+    ) -> Repairs {
+        let tracker = &*self.tracker;
+        let mut scratch = Scratch::new(tracker);
+        if robust::exchanged_throughout(tracker, &mut scratch, recorded, &mut repairs, answers) {
+            *answers = self.pass(&Corrected { recorded, repairs: &repairs }, progress);
+        }
+        robust::find(tracker, &mut scratch, recorded, &mut repairs, answers);
+        repairs
     }
 
     fn pass(
@@ -146,6 +171,16 @@ fn unused_tasks(weights: &HashMap<String, f64>, markers: &[String]) -> Option<Di
     let list = unused.join(", ");
     let message = format!("tasks for markers that are not in both model and recording: {list}");
     (!unused.is_empty()).then(|| Diagnostic::warning("track/unused-task", message))
+}
+
+/// A warning about a recording in which faults can hardly be told from constant offsets.
+fn few_frames(frames: usize) -> Option<Diagnostic> {
+    let message = format!(
+        "{frames} frames are too few to know how markers lie on the model: only those off by more than \
+         150 mm count as faults"
+    );
+    let said = || Diagnostic::warning("track/unknown-offsets", message);
+    (frames < robust::FEWEST_FRAMES).then(said)
 }
 
 fn no_common_markers(model: &Model, recording: &Recording) -> Error {

@@ -8,6 +8,7 @@ mod job;
 mod report;
 mod request;
 
+pub use condyle_track::robust::Fault;
 pub use condyle_track::{
     CoordinateTarget, FrameAnswer, FrameStatus, MarkerTarget, OrientationTarget, PostureTarget,
     Rules, Scratch, Stream, Targets, Tracker, Wanted,
@@ -19,6 +20,8 @@ pub use request::{CoordinateRequest, CoordinateValue, PostureRequest, Request};
 use condyle_diagnostics::{Diagnostic, Error};
 use condyle_model::Model;
 use condyle_motion::{Motion, Recording};
+use std::fmt;
+use std::ops::Range;
 
 /// A tracked recording.
 #[derive(Clone, Debug)]
@@ -32,20 +35,63 @@ pub struct Tracking {
     /// For each marker used, its position among the recording's labels.
     pub labels: Vec<usize>,
     /// The recording's frames that were tracked.
-    pub frames: std::ops::Range<usize>,
+    pub frames: Range<usize>,
     /// Warnings: guessed marker names, targets that are ignored.
     pub warnings: Vec<Diagnostic>,
-    /// Labels that were found exchanged, by frame range (robust tracking only).
+    /// Labels that were exchanged and put right, by frame range (robust tracking only).
     pub swaps: Vec<Swap>,
+    /// Labels that were left out, or stray and could not be put right, by frame range (robust tracking
+    /// only).
+    pub faulty: Vec<Faulty>,
 }
 
-/// Two labels that are swapped over some frames.
+/// Labels that are exchanged over some frames.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Swap {
-    /// The two labels.
-    pub labels: [String; 2],
+    /// The labels, two or more: each is at the place of the next, the last at that of the first.
+    pub labels: Vec<String>,
     /// Frames of the recording, from 0.
-    pub frames: std::ops::Range<usize>,
+    pub frames: Range<usize>,
+}
+
+impl fmt::Display for Swap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let labels: Vec<String> = self.labels.iter().map(|label| format!("`{label}`")).collect();
+        match &labels[..] {
+            [a, b] => write!(f, "labels {a} and {b} stand for each other's marker")?,
+            _ => write!(f, "labels {} each stand for the next one's marker", labels.join(", "))?,
+        }
+        write!(f, " in {}", span(&self.frames))
+    }
+}
+
+/// A label at which something is the matter over some frames.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Faulty {
+    /// The label.
+    pub label: String,
+    /// Frames of the recording, from 0.
+    pub frames: Range<usize>,
+    /// What is the matter with it.
+    pub fault: Fault,
+}
+
+impl fmt::Display for Faulty {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { label, frames, fault } = self;
+        let (fault, span) = (fault.name(), span(frames));
+        match self.fault.is_left_out() {
+            true => write!(f, "label `{label}` is {fault} in {span}: left out"),
+            false => write!(f, "label `{label}` strays in {span}: {fault}, used as it is"),
+        }
+    }
+}
+
+fn span(frames: &Range<usize>) -> String {
+    match frames.len() {
+        1 => format!("frame {}", frames.start),
+        _ => format!("frames {} to {}", frames.start, frames.end.saturating_sub(1)),
+    }
 }
 
 /// Tracks a recording; `progress` is called with the number of frames that are done and

@@ -1,6 +1,6 @@
 //! Numbers about a whole tracking.
 
-use super::{Swap, Tracking};
+use super::{Faulty, Swap, Tracking};
 use condyle_model::{CoordinateId, Model};
 use condyle_track::{FrameAnswer, FrameStatus};
 
@@ -58,8 +58,10 @@ pub struct Report {
     pub iterations: u64,
     /// Keys of the coordinates that touch a bound in more than half of the frames.
     pub mostly_at_limit: Vec<String>,
-    /// Labels that were found exchanged.
+    /// Labels that were exchanged and put right.
     pub swaps: Vec<Swap>,
+    /// Labels that were left out, or stray and could not be put right.
+    pub faulty: Vec<Faulty>,
     /// The markers used.
     pub markers: Vec<MarkerErrors>,
 }
@@ -97,6 +99,7 @@ impl Tracking {
             iterations: self.answers.iter().map(|a| u64::from(a.iterations)).sum(),
             mostly_at_limit: mostly.map(|(id, _)| model.coordinate_key(id)).collect(),
             swaps: self.swaps.clone(),
+            faulty: self.faulty.clone(),
             markers: self.marker_errors(),
         }
     }

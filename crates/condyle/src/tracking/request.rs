@@ -25,7 +25,7 @@ pub struct Request {
     pub closure_weight: f64,
     /// Hold coordinates to their enforced ranges.
     pub limits: bool,
-    /// Find swapped labels, and weigh markers down that are far off.
+    /// Put exchanged labels right, and leave markers out where they cannot be.
     pub robust: bool,
     /// Threads; `None` for as many as there are cores.
     pub threads: Option<usize>,
