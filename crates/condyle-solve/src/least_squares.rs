@@ -193,7 +193,6 @@ impl Solver {
             summary.iterations += 1;
             if fresh {
                 self.linearise(problem, near);
-                fresh = false;
             }
             let mut proposed = self.propose(trust);
             if self.local.curved && matches!(proposed, Err(Status::NotPositiveDefinite { .. })) {
