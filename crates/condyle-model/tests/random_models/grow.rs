@@ -12,7 +12,10 @@ use condyle_model::component::{
     Shear, SurfaceAxis, Swinging,
 };
 use condyle_model::limit::{Cone, ConePoint, Projection};
-use condyle_model::{CoordinateKind, JointSetId, Model, ModelBuilder, Range, SegmentId, Signal};
+use condyle_model::model::{Closure, Condition};
+use condyle_model::{
+    CoordinateId, CoordinateKind, JointSetId, Model, ModelBuilder, Range, SegmentId, Signal,
+};
 
 /// SplitMix64 (Steele, Lea & Flood 2014): reproducible everywhere, no dependency.
 pub(crate) struct Dice(u64);
@@ -82,6 +85,19 @@ impl Dice {
 
 /// A model of up to nine segments and stored numbers for it, some outside their ranges.
 pub(crate) fn random_model(seed: u64) -> (Model, Vec<f64>) {
+    random_model_with(seed, |_, _| ())
+}
+
+/// The same model with loops of all kinds, many of them between coordinates that follow others.
+pub(crate) fn random_model_with_closures(seed: u64) -> (Model, Vec<f64>) {
+    random_model_with(seed, |b, rigid| grow_closures(b, &mut Dice::new(seed ^ 0xc105e), rigid))
+}
+
+/// `finish` is given the segments that nothing stretches.
+fn random_model_with(
+    seed: u64,
+    finish: impl FnOnce(&mut ModelBuilder, &[SegmentId]),
+) -> (Model, Vec<f64>) {
     let mut dice = Dice::new(seed);
     let mut b = ModelBuilder::new("random");
     let mut segments: Vec<SegmentId> = vec![];
@@ -152,6 +168,14 @@ pub(crate) fn random_model(seed: u64) -> (Model, Vec<f64>) {
             }
         }
     }
+    // Parents are made before their children.
+    let mut rigid: Vec<SegmentId> = vec![];
+    for (&id, parent) in segments.iter().zip(&parents) {
+        if !bent_segments.contains(&id) && parent.is_none_or(|p| rigid.contains(&p)) {
+            rigid.push(id);
+        }
+    }
+    finish(&mut b, &rigid);
     let model = b.build().unwrap_or_else(|findings| panic!("seed {seed}: {findings:?}"));
     let mut stored = model.defaults();
     for id in model.coordinate_ids() {
@@ -164,6 +188,41 @@ pub(crate) fn random_model(seed: u64) -> (Model, Vec<f64>) {
         }
     }
     (model, stored)
+}
+
+fn grow_closures(b: &mut ModelBuilder, dice: &mut Dice, rigid: &[SegmentId]) {
+    let scalars: Vec<CoordinateId> = (0..b.coordinates().len())
+        .filter(|&i| b.coordinates()[i].kind != CoordinateKind::Orientation)
+        .filter_map(|i| b.coordinate_at(i))
+        .collect();
+    let followers: Vec<CoordinateId> =
+        scalars.iter().copied().filter(|&id| b.coordinate_mut(id).follows.is_some()).collect();
+    for number in 0..4 {
+        let segment = |dice: &mut Dice| b.segment_at(dice.below(10));
+        let at = [(); 2].map(|()| (segment(dice), dice.vector(0.3)));
+        let condition = match dice.below(5) {
+            0 => Condition::Points { at },
+            1 => Condition::Distance { at, distance: 0.2 },
+            2 => {
+                let frame = |dice: &mut Dice| {
+                    Affine::new(Quat::exp(dice.vector(0.5)).to_mat3(), dice.vector(0.3))
+                };
+                let segment = |dice: &mut Dice| rigid.get(dice.below(rigid.len() + 1)).copied();
+                Condition::Frames { at: [(); 2].map(|()| (segment(dice), frame(dice))) }
+            }
+            _ if scalars.len() > 1 => {
+                let any = |dice: &mut Dice| {
+                    let list = if dice.below(2) == 0 { &followers } else { &scalars };
+                    let list = if list.is_empty() { &scalars } else { list };
+                    list[dice.below(list.len())]
+                };
+                let (follower, driver) = (any(dice), any(dice));
+                Condition::Coupling { follower, driver, function: dice.function() }
+            }
+            _ => continue,
+        };
+        b.closure(Closure { name: format!("closure_{number}"), condition });
+    }
 }
 
 fn grow_coordinate(
