@@ -1,13 +1,13 @@
 //! One recording on its way through a tracker.
 
-use super::{Request, Swap, Tracking};
+use super::{Request, Swap, Tracking, posture};
 use crate::matching::match_markers;
 use condyle_diagnostics::{Diagnostic, Error};
-use condyle_model::{Model, PostureTerm};
+use condyle_model::Model;
 use condyle_motion::{Motion, Recording};
 use condyle_track::robust::{self, Corrected};
 use condyle_track::{
-    FrameAnswer, MarkerTarget, PostureTarget, Recorded, Rules, Scratch, Targets, Tracker, sequence,
+    FrameAnswer, MarkerTarget, Recorded, Rules, Scratch, Targets, Tracker, sequence,
 };
 use std::collections::HashMap;
 use std::ops::Range;
@@ -62,7 +62,7 @@ impl<'a> Job<'a> {
         let frames = frames_in(recording, request.time_range)?;
         let times = &recording.times[frames.clone()];
         request.add_coordinates(&model, times, &mut targets, &mut warnings);
-        add_postures(&model, &mut targets.postures);
+        posture::add(&model, &mut targets.postures);
         let weight = request.closure_weight;
         targets.closure_weight = weight.is_finite().then_some(weight);
         let (threads, robust) = (request.threads, request.robust);
@@ -137,22 +137,6 @@ impl<'a> Job<'a> {
         let answers = in_parallel(self.threads, chunks.len(), || Scratch::new(tracker), solve);
         sequence::stitch(tracker, &mut scratch, recorded, &chunks, answers)
     }
-}
-
-/// Adds what the model says of its posture, before what was asked; a single coordinate that was asked
-/// for is held as asked.
-fn add_postures(model: &Model, targets: &mut Vec<PostureTarget>) {
-    let held = |term: &PostureTerm| {
-        let [(own, _)] = term.sum[..] else { return false };
-        targets.iter().any(|t| matches!(t.terms[..], [(asked, _)] if asked == own))
-    };
-    let own = model.postures().iter().filter(|term| !held(term)).map(|term| PostureTarget {
-        terms: term.sum.clone(),
-        rest: term.rest,
-        stiffness: term.stiffness,
-    });
-    let own: Vec<PostureTarget> = own.collect();
-    targets.splice(0..0, own);
 }
 
 /// A warning about weights of markers that are not tracked.
