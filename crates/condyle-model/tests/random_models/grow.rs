@@ -14,7 +14,8 @@ use condyle_model::component::{
 use condyle_model::limit::{Cone, ConePoint, Projection};
 use condyle_model::model::{Closure, Condition};
 use condyle_model::{
-    CoordinateId, CoordinateKind, JointSetId, Model, ModelBuilder, Range, SegmentId, Signal,
+    CoordinateId, CoordinateKind, JointSetId, Model, ModelBuilder, PostureTerm, Range, SegmentId,
+    Signal,
 };
 
 /// SplitMix64 (Steele, Lea & Flood 2014): reproducible everywhere, no dependency.
@@ -88,9 +89,14 @@ pub(crate) fn random_model(seed: u64) -> (Model, Vec<f64>) {
     random_model_with(seed, |_, _| ())
 }
 
-/// The same model with loops of all kinds, many of them between coordinates that follow others.
-pub(crate) fn random_model_with_closures(seed: u64) -> (Model, Vec<f64>) {
-    random_model_with(seed, |b, rigid| grow_closures(b, &mut Dice::new(seed ^ 0xc105e), rigid))
+/// The same model with loops of all kinds, many of them between coordinates that follow others, and with
+/// posture terms.
+pub(crate) fn random_model_with_loops(seed: u64) -> (Model, Vec<f64>) {
+    random_model_with(seed, |b, rigid| {
+        let mut dice = Dice::new(seed ^ 0xc105e);
+        grow_closures(b, &mut dice, rigid);
+        grow_postures(b, &mut dice);
+    })
 }
 
 /// `finish` is given the segments that nothing stretches.
@@ -222,6 +228,35 @@ fn grow_closures(b: &mut ModelBuilder, dice: &mut Dice, rigid: &[SegmentId]) {
             _ => continue,
         };
         b.closure(Closure { name: format!("closure_{number}"), condition });
+    }
+}
+
+/// Terms of one coordinate, some of them named as a document names those of a coordinate's own, and of
+/// two.
+fn grow_postures(b: &mut ModelBuilder, dice: &mut Dice) {
+    for index in 0..b.coordinates().len() {
+        let Some(id) = b.coordinate_at(index) else { continue };
+        let coordinate = &b.coordinates()[index];
+        if coordinate.kind == CoordinateKind::Orientation || dice.below(3) == 0 {
+            continue;
+        }
+        // The joint set of a segment is named for it.
+        let own = format!("joint_{}.{}", coordinate.joint_set.index(), coordinate.name);
+        let (name, factor) = match dice.below(4) {
+            0 => (format!("posture {index}"), 1.0),
+            1 => (own, dice.within(1.0)),
+            _ => (own, 1.0),
+        };
+        let mut sum = vec![(id, factor)];
+        if let Some(other) = index.checked_sub(1).and_then(|index| b.coordinate_at(index))
+            && b.coordinate_mut(other).kind != CoordinateKind::Orientation
+            && dice.below(4) == 0
+        {
+            sum.push((other, dice.within(2.0)));
+        }
+        let rest = if dice.below(2) == 0 { 0.0 } else { dice.within(1.0) };
+        let source = (dice.below(3) == 0).then(|| "illustrative".to_owned());
+        b.posture(PostureTerm { name, sum, rest, stiffness: 1e-5, source });
     }
 }
 

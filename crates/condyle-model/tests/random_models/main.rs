@@ -146,7 +146,7 @@ fn the_jacobian_equals_central_differences_and_duals() {
 fn rows_of_closures_equal_central_differences() {
     let (mut rows, mut led) = (0, 0);
     for seed in 0..TREES {
-        let (model, stored) = grow::random_model_with_closures(seed);
+        let (model, stored) = grow::random_model_with_loops(seed);
         let program = Program::compile(&model);
         let (mut pose, mut jacobian) = (Pose::new(&program), Jacobian::new(&program));
         program.evaluate_with_jacobian(&stored, &mut pose, &mut jacobian).unwrap();
