@@ -33,6 +33,8 @@ pub enum Subject {
     Marker(String),
     /// A loop.
     Closure(String),
+    /// A posture term.
+    Posture(String),
     /// Segments that grow together.
     SizeGroup(String),
     /// A column of a table.
@@ -56,6 +58,7 @@ impl Subject {
             | Self::Component { name, .. }
             | Self::Marker(name)
             | Self::Closure(name)
+            | Self::Posture(name)
             | Self::SizeGroup(name)
             | Self::Column(name) => name,
         }
@@ -73,6 +76,7 @@ impl fmt::Display for Subject {
             }
             Self::Marker(_) => "marker",
             Self::Closure(_) => "closure",
+            Self::Posture(_) => "posture",
             Self::SizeGroup(_) => "size group",
             Self::Column(_) => "column",
         };

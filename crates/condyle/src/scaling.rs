@@ -4,13 +4,15 @@
 //! each, and one for everything that is in no group,
 //!
 //! ```text
-//! minimise  Σₘ |eₘ|²/σ²  +  Σ_g (ln s_g - ln s)²/τ²
+//! minimise  Σₘ |eₘ|²/σ²  +  Σ_g (ln s_g - ln s)²/τ²  +  n P/σ²
 //! ```
 //!
 //! where eₘ is the distance of marker m of the scaled model, in the posture that comes nearest, from
 //! its place in the recording; s_g the factor of a group and s that of the body. A landmark is found to
 //! 10 to 20 mm (σ = 15 mm), and bones differ from the body by some percent (τ = 8 %), so that a group
-//! without markers follows the body and one with many follows them. Factors are held to 0.5 to 2.
+//! without markers follows the body and one with many follows them. Factors are held to 0.5 to 2. P is
+//! what the model says of its posture
+//! ([`PostureTerm`](condyle_model::model::PostureTerm)), which tracking adds to the mean over n markers.
 //!
 //! A marker that stays farther off than 2σ is no landmark, or not the one that the model means: those
 //! on the middle of a thigh stand anywhere. It counts by (2σ/|e|)² of another, found in a few rounds.
@@ -23,6 +25,7 @@
 //! generic body, while a person's are those of the skin on that day.
 
 use crate::matching::match_markers;
+use crate::tracking::posture;
 use condyle_diagnostics::Diagnostic;
 use condyle_math::Vec3;
 use condyle_model::component::Component;
@@ -395,7 +398,10 @@ impl<'m> Search<'m> {
     /// The posture at these factors, from one near by if there is one.
     fn at(&self, logs: &[f64], near: Option<&[f64]>) -> State {
         let rules = Rules { tolerance: 1e-12, ..Rules::default() };
-        let tracker = Tracker::new(self.model_at(logs), self.targets.clone(), rules);
+        let model = self.model_at(logs);
+        let mut targets = self.targets.clone();
+        targets.postures = posture::of_model(&model).collect();
+        let tracker = Tracker::new(model, targets, rules);
         let mut scratch = Scratch::new(&tracker);
         let places = &self.standing.places;
         let answer = match near {
@@ -412,6 +418,13 @@ impl<'m> Search<'m> {
             let off = at - place.map_or(at, Vec3::from);
             let scale = target.weight.sqrt() / self.assumed.marker_spread;
             residuals.extend(off.to_array().map(|x| x * scale));
+        }
+        let weights: f64 = self.targets.markers.iter().map(|target| target.weight).sum();
+        for target in &tracker.targets().postures {
+            let value = |&(id, factor): &(_, f64)| factor * pose.coordinate(tracker.model(), id)[0];
+            let off = target.terms.iter().map(value).sum::<f64>() - target.rest;
+            let scale = (target.stiffness * weights).sqrt() / self.assumed.marker_spread;
+            residuals.push(off * scale);
         }
         let groups = logs[1..].iter().map(|log| (log - logs[0]) / self.assumed.group_spread);
         residuals.extend(groups);

@@ -17,6 +17,7 @@ fn same(a: &Model, b: &Model, stored: &[f64], what: &str) {
     assert_eq!(a.joint_sets(), b.joint_sets(), "{what}");
     assert_eq!(a.coordinates(), b.coordinates(), "{what}");
     assert_eq!(a.markers(), b.markers(), "{what}");
+    assert_eq!(a.postures(), b.postures(), "{what}");
     assert_eq!(a.closures().len(), b.closures().len(), "{what}");
     for (a, b) in a.closures().iter().zip(b.closures()) {
         assert_eq!(a.condition.rows(), b.condition.rows(), "{what}");
@@ -51,7 +52,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
     #[test]
     fn random_models_are_kept(seed in any::<u64>()) {
-        let (model, stored) = grow::random_model(seed);
+        let (model, stored) = grow::random_model_with_loops(seed);
         let text = document::write(&model);
         let again = read(&text);
         same(&model, &again, &stored, &format!("seed {seed}"));
@@ -132,6 +133,67 @@ fn odd_names_and_every_closure_are_kept() {
     same(&model, &again, &[0.3, 0.0], "odd names");
     assert_eq!(model.closures()[2].condition, again.closures()[2].condition);
     assert_eq!(again.closures()[1].name, "same name_2");
+}
+
+#[test]
+fn postures_are_written_with_their_coordinates_where_they_can_be() {
+    let text = r#"
+condyle = 1
+kind = "model"
+angles = "deg"
+mirror = { plane = "z", from = "_r", to = "_l" }
+[segment.trunk]
+[segment.arm_r]
+parent = "trunk"
+[joint.neck]
+type = "hinge"
+segment = "trunk"
+axis = [0, 0, 1]
+coordinates = ["flexion"]
+[joint.shoulder_r]
+type = "universal"
+segment = "arm_r"
+axes = [[0, 0, 1], [1, 0, 0]]
+coordinates = ["flexion", "lift_r"]
+coordinate.flexion = { stiffness = 2e-5, source = "a paper" }
+coordinate.lift_r = { default = 5, rest = 30, stiffness = 1e-5 }
+[posture.level_r]
+sum = { "neck.flexion" = 1, "shoulder_r.flexion" = -0.5, lift_r = 0.25 }
+rest = 18
+stiffness = 3e-5
+"#;
+    let model = read(text);
+    let found: Vec<(&str, f64, f64)> =
+        model.postures().iter().map(|p| (p.name.as_str(), p.rest, p.stiffness)).collect();
+    // 18 and 30 degrees; those of the right side first, then the other side's with the same numbers.
+    let (a, b) = (18f64.to_radians(), 30f64.to_radians());
+    let expected = [
+        ("shoulder_r.flexion", 0.0, 2e-5),
+        ("shoulder_r.lift_r", b, 1e-5),
+        ("shoulder_l.flexion", 0.0, 2e-5),
+        ("shoulder_l.lift_l", b, 1e-5),
+        ("level_r", a, 3e-5),
+        ("level_l", a, 3e-5),
+    ];
+    assert_eq!(found, expected);
+    assert_eq!(model.postures()[0].source.as_deref(), Some("a paper"));
+    let names = |index: usize| -> Vec<(String, f64)> {
+        let sum = &model.postures()[index].sum;
+        sum.iter().map(|&(id, factor)| (model.coordinate_key(id), factor)).collect()
+    };
+    let all = |names: [(&str, f64); 3]| names.map(|(n, a)| (n.to_owned(), a)).to_vec();
+    assert_eq!(
+        names(4),
+        all([("neck/flexion", 1.0), ("shoulder_r/flexion", -0.5), ("lift_r", 0.25)])
+    );
+    // What is shared keeps its factor.
+    assert_eq!(
+        names(5),
+        all([("neck/flexion", 1.0), ("shoulder_l/flexion", -0.5), ("lift_l", 0.25)])
+    );
+    let written = document::write(&model);
+    assert_eq!(written.matches("[posture.").count(), 2, "{written}");
+    assert_eq!(read(&written), model);
 }
 
 #[test]

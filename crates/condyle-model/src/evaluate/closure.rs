@@ -124,9 +124,12 @@ impl ClosureRows {
                     // Scalar coordinates, with one stored number and one direction each.
                     let (wanted, slope) = function.value_and_slope(value(*driver));
                     residuals[0] = value(*follower) - wanted;
-                    if jacobian.is_some() {
-                        derivatives[model.tangent_range(*follower).start] += 1.0;
-                        derivatives[model.tangent_range(*driver).start] -= slope;
+                    let Some(jacobian) = jacobian else { continue };
+                    // Either may itself follow others: then those move it, and not its own direction.
+                    for (id, factor) in [(*follower, 1.0), (*driver, -slope)] {
+                        for &(direction, slot) in program.coordinate_directions(model, id) {
+                            derivatives[direction as usize] += factor * jacobian.derivative(slot);
+                        }
                     }
                 }
             }

@@ -1,10 +1,11 @@
 //! Making a model step by step.
 
 use super::check;
+use super::posture;
 use super::scaling;
 use super::{
     Closure, ComponentId, Coordinate, CoordinateId, CoordinateKind, JointSet, JointSetId, Marker,
-    Model, NamedComponent, Segment, SegmentId, SizeGroup, UpAxis,
+    Model, NamedComponent, PostureTerm, Segment, SegmentId, SizeGroup, UpAxis,
 };
 use crate::component::{
     Ball, Combine, Compensate, Component, ConstantCurvature, Depend, Ellipsoid, Map, Pivot, Place,
@@ -37,6 +38,7 @@ impl ModelBuilder {
                 components: vec![],
                 markers: vec![],
                 closures: vec![],
+                postures: vec![],
                 size_groups: vec![],
                 stored_offsets: vec![],
                 tangent_offsets: vec![],
@@ -295,6 +297,11 @@ impl ModelBuilder {
         self.model.closures.push(closure);
     }
 
+    /// A coordinate, or a sum of several, that is held near a value where nothing else determines it.
+    pub fn posture(&mut self, posture: PostureTerm) {
+        self.model.postures.push(posture);
+    }
+
     /// Segments with a common factor when the model is scaled; a segment is in one group at most.
     pub fn size_group(&mut self, name: &str, segments: Vec<SegmentId>) {
         self.model.size_groups.push(SizeGroup { name: name.to_owned(), segments });
@@ -315,6 +322,7 @@ impl ModelBuilder {
     pub fn build_with_warnings(mut self) -> Result<Read<Model>, Error> {
         let mut findings = check::check(&self.model);
         findings.extend(scaling::check_groups(&self.model));
+        findings.extend(posture::check_postures(&self.model));
         findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
         let broken = findings.first().is_some_and(|f| f.severity == Severity::Error);
         let warnings = match Error::of(findings) {

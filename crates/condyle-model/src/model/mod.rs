@@ -8,6 +8,7 @@ mod builder;
 mod check;
 mod closure;
 mod coordinate;
+mod posture;
 mod scaling;
 mod segment;
 
@@ -15,6 +16,7 @@ pub use builder::ModelBuilder;
 pub use check::{AXIS_LENGTH, CROSSING_RANGE, DEFAULT_OUTSIDE_RANGE, LOOKS_LIKE_DEGREES};
 pub use closure::{Closure, Condition};
 pub use coordinate::{Coordinate, CoordinateKind};
+pub use posture::PostureTerm;
 pub use scaling::SizeGroup;
 pub use segment::Segment;
 
@@ -77,6 +79,7 @@ pub struct Model {
     pub(crate) components: Vec<NamedComponent>,
     pub(crate) markers: Vec<Marker>,
     pub(crate) closures: Vec<Closure>,
+    pub(crate) postures: Vec<PostureTerm>,
     pub(crate) size_groups: Vec<SizeGroup>,
     /// Where each coordinate's stored numbers begin; one more for the end.
     pub(crate) stored_offsets: Vec<u32>,

@@ -21,7 +21,8 @@
 //!
 //! A distance that is itself a coordinate, such as the position of a pelvis in a room, is given by
 //! the caller and unchanged. If it is a distance between two bones, its default and its range are
-//! scaled, since a patella that rests 4 cm above a joint rests higher above a larger one.
+//! scaled, since a patella that rests 4 cm above a joint rests higher above a larger one; so is the
+//! value at rest of a posture term of such distances alone.
 
 use super::{Condition, CoordinateKind, Model, NamedComponent, SegmentId};
 use crate::component::{Centre, Component, ContactPair, Gliding, Pivot, Signal};
@@ -105,6 +106,14 @@ impl Model {
             grow_component(&mut named.component, factor, &of);
         }
         let of_coordinate = model.grow_distances(&of_component);
+        for posture in &mut model.postures {
+            let mut factors = posture.sum.iter().map(|(id, _)| of_coordinate[id.index()]);
+            if let Some(first) = factors.next()
+                && factors.all(|factor| factor == first)
+            {
+                posture.rest *= first;
+            }
+        }
         for closure in &mut model.closures {
             grow_condition(&mut closure.condition, &of, &of_coordinate);
         }

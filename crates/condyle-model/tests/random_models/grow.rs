@@ -12,7 +12,11 @@ use condyle_model::component::{
     Shear, SurfaceAxis, Swinging,
 };
 use condyle_model::limit::{Cone, ConePoint, Projection};
-use condyle_model::{CoordinateKind, JointSetId, Model, ModelBuilder, Range, SegmentId, Signal};
+use condyle_model::model::{Closure, Condition};
+use condyle_model::{
+    CoordinateId, CoordinateKind, JointSetId, Model, ModelBuilder, PostureTerm, Range, SegmentId,
+    Signal,
+};
 
 /// SplitMix64 (Steele, Lea & Flood 2014): reproducible everywhere, no dependency.
 pub(crate) struct Dice(u64);
@@ -82,6 +86,24 @@ impl Dice {
 
 /// A model of up to nine segments and stored numbers for it, some outside their ranges.
 pub(crate) fn random_model(seed: u64) -> (Model, Vec<f64>) {
+    random_model_with(seed, |_, _| ())
+}
+
+/// The same model with loops of all kinds, many of them between coordinates that follow others, and with
+/// posture terms.
+pub(crate) fn random_model_with_loops(seed: u64) -> (Model, Vec<f64>) {
+    random_model_with(seed, |b, rigid| {
+        let mut dice = Dice::new(seed ^ 0xc105e);
+        grow_closures(b, &mut dice, rigid);
+        grow_postures(b, &mut dice);
+    })
+}
+
+/// `finish` is given the segments that nothing stretches.
+fn random_model_with(
+    seed: u64,
+    finish: impl FnOnce(&mut ModelBuilder, &[SegmentId]),
+) -> (Model, Vec<f64>) {
     let mut dice = Dice::new(seed);
     let mut b = ModelBuilder::new("random");
     let mut segments: Vec<SegmentId> = vec![];
@@ -152,6 +174,14 @@ pub(crate) fn random_model(seed: u64) -> (Model, Vec<f64>) {
             }
         }
     }
+    // Parents are made before their children.
+    let mut rigid: Vec<SegmentId> = vec![];
+    for (&id, parent) in segments.iter().zip(&parents) {
+        if !bent_segments.contains(&id) && parent.is_none_or(|p| rigid.contains(&p)) {
+            rigid.push(id);
+        }
+    }
+    finish(&mut b, &rigid);
     let model = b.build().unwrap_or_else(|findings| panic!("seed {seed}: {findings:?}"));
     let mut stored = model.defaults();
     for id in model.coordinate_ids() {
@@ -164,6 +194,70 @@ pub(crate) fn random_model(seed: u64) -> (Model, Vec<f64>) {
         }
     }
     (model, stored)
+}
+
+fn grow_closures(b: &mut ModelBuilder, dice: &mut Dice, rigid: &[SegmentId]) {
+    let scalars: Vec<CoordinateId> = (0..b.coordinates().len())
+        .filter(|&i| b.coordinates()[i].kind != CoordinateKind::Orientation)
+        .filter_map(|i| b.coordinate_at(i))
+        .collect();
+    let followers: Vec<CoordinateId> =
+        scalars.iter().copied().filter(|&id| b.coordinate_mut(id).follows.is_some()).collect();
+    for number in 0..4 {
+        let segment = |dice: &mut Dice| b.segment_at(dice.below(10));
+        let at = [(); 2].map(|()| (segment(dice), dice.vector(0.3)));
+        let condition = match dice.below(5) {
+            0 => Condition::Points { at },
+            1 => Condition::Distance { at, distance: 0.2 },
+            2 => {
+                let frame = |dice: &mut Dice| {
+                    Affine::new(Quat::exp(dice.vector(0.5)).to_mat3(), dice.vector(0.3))
+                };
+                let segment = |dice: &mut Dice| rigid.get(dice.below(rigid.len() + 1)).copied();
+                Condition::Frames { at: [(); 2].map(|()| (segment(dice), frame(dice))) }
+            }
+            _ if scalars.len() > 1 => {
+                let any = |dice: &mut Dice| {
+                    let list = if dice.below(2) == 0 { &followers } else { &scalars };
+                    let list = if list.is_empty() { &scalars } else { list };
+                    list[dice.below(list.len())]
+                };
+                let (follower, driver) = (any(dice), any(dice));
+                Condition::Coupling { follower, driver, function: dice.function() }
+            }
+            _ => continue,
+        };
+        b.closure(Closure { name: format!("closure_{number}"), condition });
+    }
+}
+
+/// Terms of one coordinate, some of them named as a document names those of a coordinate's own, and of
+/// two.
+fn grow_postures(b: &mut ModelBuilder, dice: &mut Dice) {
+    for index in 0..b.coordinates().len() {
+        let Some(id) = b.coordinate_at(index) else { continue };
+        let coordinate = &b.coordinates()[index];
+        if coordinate.kind == CoordinateKind::Orientation || dice.below(3) == 0 {
+            continue;
+        }
+        // The joint set of a segment is named for it.
+        let own = format!("joint_{}.{}", coordinate.joint_set.index(), coordinate.name);
+        let (name, factor) = match dice.below(4) {
+            0 => (format!("posture {index}"), 1.0),
+            1 => (own, dice.within(1.0)),
+            _ => (own, 1.0),
+        };
+        let mut sum = vec![(id, factor)];
+        if let Some(other) = index.checked_sub(1).and_then(|index| b.coordinate_at(index))
+            && b.coordinate_mut(other).kind != CoordinateKind::Orientation
+            && dice.below(4) == 0
+        {
+            sum.push((other, dice.within(2.0)));
+        }
+        let rest = if dice.below(2) == 0 { 0.0 } else { dice.within(1.0) };
+        let source = (dice.below(3) == 0).then(|| "illustrative".to_owned());
+        b.posture(PostureTerm { name, sum, rest, stiffness: 1e-5, source });
+    }
 }
 
 fn grow_coordinate(

@@ -5,6 +5,8 @@ mod naive;
 mod scan;
 
 use condyle_math::{Affine, Dual, Mat3, Vec3};
+use condyle_model::evaluate::ClosureRows;
+use condyle_model::model::Condition;
 use condyle_model::{Jacobian, Mode, Model, Pose, Program};
 
 /// Largest difference of any entry of two transforms.
@@ -138,6 +140,62 @@ fn the_jacobian_equals_central_differences_and_duals() {
         }
     }
     assert!(rows > 1000, "only {rows} rows away from kinks");
+}
+
+#[test]
+fn rows_of_closures_equal_central_differences() {
+    let (mut rows, mut led) = (0, 0);
+    for seed in 0..TREES {
+        let (model, stored) = grow::random_model_with_loops(seed);
+        let program = Program::compile(&model);
+        let (mut pose, mut jacobian) = (Pose::new(&program), Jacobian::new(&program));
+        program.evaluate_with_jacobian(&stored, &mut pose, &mut jacobian).unwrap();
+        let mut exact = ClosureRows::new(&model);
+        exact.update(&model, &program, &pose, Some(&jacobian));
+        let h = 1e-6;
+        let mut twin = ClosureRows::new(&model);
+        for direction in 0..model.tangent_len() {
+            let [ahead, behind] = [h, -h].map(|step| {
+                let moved = retract(&model, &stored, direction, step);
+                program.evaluate(&moved, Mode::Open, &mut pose).unwrap();
+                twin.update(&model, &program, &pose, None);
+                twin.residuals.clone()
+            });
+            let mut row = 0;
+            for closure in model.closures() {
+                let own = row..row + closure.condition.rows();
+                row = own.end;
+                let smooth = match &closure.condition {
+                    // The rotation between two frames has a kink at half a turn, a distance at 0.
+                    Condition::Frames { .. } => {
+                        let turn = &exact.residuals[own.start + 3..own.end];
+                        let turn = turn.iter().map(|x| x * x).sum::<f64>().sqrt();
+                        turn < 3.0
+                    }
+                    Condition::Distance { distance, .. } => {
+                        exact.residuals[own.start] + distance > 1e-3
+                    }
+                    Condition::Coupling { follower, driver, .. } => {
+                        let follows = |&id: &_| model.coordinate(id).follows.is_some();
+                        led += usize::from([*follower, *driver].iter().any(follows));
+                        true
+                    }
+                    Condition::Points { .. } => true,
+                };
+                for row in own.filter(|_| smooth) {
+                    let difference = (ahead[row] - behind[row]) * (0.5 / h);
+                    let found = exact.row(row)[direction];
+                    let size = 1.0 + found.abs() + exact.residuals[row].abs();
+                    assert!(
+                        (found - difference).abs() < 1e-6 * size,
+                        "seed {seed}: row {row} along {direction}: {found} {difference}"
+                    );
+                    rows += 1;
+                }
+            }
+        }
+    }
+    assert!(rows > 10_000 && led > 1000, "only {rows} slopes, {led} of couplings that are led");
 }
 
 #[test]

@@ -155,9 +155,10 @@ impl Targets {
         });
     }
 
-    /// Whether something but markers says where the model should be.
+    /// Whether something but markers says where the model should be; a posture only says how it holds
+    /// itself, and leaves a frame without markers as it was.
     pub(crate) fn stand_without_markers(&self) -> bool {
-        !(self.coordinates.is_empty() && self.orientations.is_empty() && self.postures.is_empty())
+        !(self.coordinates.is_empty() && self.orientations.is_empty())
     }
 
     /// Whether a segment should have an orientation in a frame.

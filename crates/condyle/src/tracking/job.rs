@@ -1,6 +1,6 @@
 //! One recording on its way through a tracker.
 
-use super::{Faulty, Request, Swap, Tracking};
+use super::{Faulty, Request, Swap, Tracking, posture};
 use crate::matching::match_markers;
 use condyle_diagnostics::{Diagnostic, Error};
 use condyle_model::Model;
@@ -62,6 +62,7 @@ impl<'a> Job<'a> {
         let frames = frames_in(recording, request.time_range)?;
         let times = &recording.times[frames.clone()];
         request.add_coordinates(&model, times, &mut targets, &mut warnings);
+        posture::add(&model, &mut targets.postures);
         let weight = request.closure_weight;
         targets.closure_weight = weight.is_finite().then_some(weight);
         let (threads, robust) = (request.threads, request.robust);

@@ -5,6 +5,7 @@
 //! that come one by one are solved by a [`Stream`], over a [`Tracker`] that shares its model.
 
 mod job;
+pub(crate) mod posture;
 mod report;
 mod request;
 

@@ -18,6 +18,7 @@ pub(super) struct Draft {
     pub(super) outputs: Vec<OutputDraft>,
     pub(super) markers: Vec<MarkerDraft>,
     pub(super) closures: Vec<ClosureDraft>,
+    pub(super) postures: Vec<PostureDraft>,
     pub(super) sizes: Vec<SizeDraft>,
     /// Components that could not be read, by joint set and name; whole joints have an empty name.
     pub(super) broken: HashSet<(String, String)>,
@@ -41,13 +42,25 @@ pub(super) struct CoordinateDraft {
     pub(super) locked: bool,
     pub(super) source: Option<String>,
     pub(super) follows: Option<Name>,
+    /// Its value at rest and its stiffness, if it has one.
+    pub(super) held: Option<[f64; 2]>,
 }
 
 impl CoordinateDraft {
     /// A free coordinate at its neutral value.
     pub(super) fn new(set: &str, name: Name, kind: CoordinateKind) -> Self {
         let (set, default, range) = (set.to_owned(), kind.neutral(), Range::FREE);
-        Self { set, name, kind, default, range, locked: false, source: None, follows: None }
+        Self {
+            set,
+            name,
+            kind,
+            default,
+            range,
+            locked: false,
+            source: None,
+            follows: None,
+            held: None,
+        }
     }
 }
 
@@ -82,6 +95,17 @@ pub(super) struct ClosureDraft {
 }
 
 #[derive(Clone)]
+pub(super) struct PostureDraft {
+    pub(super) name: Name,
+    pub(super) sum: Vec<(Name, f64)>,
+    pub(super) rest: f64,
+    /// The unit of `rest` where all coordinates are angles.
+    pub(super) angle_unit: f64,
+    pub(super) stiffness: f64,
+    pub(super) source: Option<String>,
+}
+
+#[derive(Clone)]
 pub(super) struct SizeDraft {
     pub(super) name: Name,
     pub(super) segments: Vec<Name>,
@@ -108,6 +132,7 @@ impl Draft {
         self.components.sort_by_key(|c| at(&c.name));
         self.markers.sort_by_key(|m| at(&m.name));
         self.closures.sort_by_key(|c| at(&c.name));
+        self.postures.sort_by_key(|p| at(&p.name));
         self.sizes.sort_by_key(|s| at(&s.name));
     }
 }

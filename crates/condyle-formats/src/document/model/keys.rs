@@ -5,7 +5,7 @@ use crate::document::head::HEAD;
 
 /// The keys at the top of a document, beside those of its head.
 pub(super) const TOP: &[&str] =
-    &["up", "mirror", "segment", "joint", "joint_set", "marker", "closure", "size"];
+    &["up", "mirror", "segment", "joint", "joint_set", "marker", "closure", "posture", "size"];
 pub(super) const MIRROR: &[&str] = &["plane", "from", "to"];
 pub(super) const SEGMENT: &[&str] = &[
     "parent",
@@ -57,10 +57,21 @@ pub(super) const JOINT_TYPES: &[(&str, &[&str])] = &[
 /// The keys of every plain joint.
 pub(super) const JOINT_BASE: &[&str] = &["segment", "type", "coordinates", "coordinate"];
 pub(super) const JOINT_SET: &[&str] = &["coordinate", "component", "output"];
-pub(super) const COORDINATE: &[&str] =
-    &["kind", "default", "range", "enforced", "locked", "unit", "source", "follows"];
+pub(super) const COORDINATE: &[&str] = &[
+    "kind",
+    "default",
+    "range",
+    "enforced",
+    "locked",
+    "unit",
+    "source",
+    "follows",
+    "rest",
+    "stiffness",
+];
 pub(super) const MARKER: &[&str] = &["segment", "at"];
 pub(super) const CLOSURE: &[&str] = &["points", "frames", "distance", "coupling"];
+pub(super) const POSTURE: &[&str] = &["sum", "rest", "stiffness", "source"];
 pub(super) const SIZE: &[&str] = &["segments"];
 pub(super) const FRAME: &[&str] = &["segment", "at", "turn", "order", "matrix"];
 pub(super) const CENTRE: &[&str] = &["to", "at"];
@@ -115,7 +126,7 @@ pub(super) const COMPONENTS: &[(&str, &[&str])] = &[
 #[must_use]
 pub fn keys() -> Vec<(String, Vec<&'static str>)> {
     let top = [HEAD, TOP].concat();
-    let plain: [(&str, &[&'static str]); 17] = [
+    let plain: [(&str, &[&'static str]); 18] = [
         ("model", &top),
         ("mirror", MIRROR),
         ("segment", SEGMENT),
@@ -124,6 +135,7 @@ pub fn keys() -> Vec<(String, Vec<&'static str>)> {
         ("coordinate", COORDINATE),
         ("marker", MARKER),
         ("closure", CLOSURE),
+        ("posture", POSTURE),
         ("size", SIZE),
         ("point", MARKER),
         ("frame", FRAME),

@@ -18,7 +18,7 @@
 use super::blueprint::{Blueprint, Held};
 use super::draft::{
     ClosureDraft, ComponentDraft, ConditionDraft, CoordinateDraft, Draft, Holder, MarkerDraft,
-    OutputDraft, SegmentDraft,
+    OutputDraft, PostureDraft, SegmentDraft,
 };
 use crate::document::texts::{Name, Texts};
 use condyle_math::function::{Function, SimmSpline};
@@ -47,6 +47,7 @@ impl Mirror {
         let segments = written(&mut draft.segments.iter().map(|s| &s.name));
         let markers = written(&mut draft.markers.iter().map(|m| &m.name));
         let closures = written(&mut draft.closures.iter().map(|c| &c.name));
+        let postures = written(&mut draft.postures.iter().map(|p| &p.name));
         let news = |known: &HashSet<String>, name: &str| {
             self.other(name).is_some_and(|other| !known.contains(&other))
         };
@@ -118,6 +119,15 @@ impl Mirror {
             |c| ClosureDraft {
                 name: self.renamed(&c.name),
                 condition: self.condition(&c.condition),
+            },
+        );
+        add(
+            &mut draft.postures,
+            |p| news(&postures, &p.name.text),
+            |p| PostureDraft {
+                name: self.renamed(&p.name),
+                sum: p.sum.iter().map(|(name, factor)| (self.port(name), *factor)).collect(),
+                ..p.clone()
             },
         );
     }

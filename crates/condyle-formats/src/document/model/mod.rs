@@ -5,12 +5,14 @@
 //! segment.S  = parent, at, turn, order, matrix (the joint in the parent),
 //!              joint_at, joint_turn, joint_order, joint_matrix (the joint in the segment)
 //! joint.J    = segment, type and the keys of that type, coordinates, coordinate.C
-//! joint_set.J.coordinate.C   = kind, default, range, enforced, locked, unit, source, follows
+//! joint_set.J.coordinate.C   = kind, default, range, enforced, locked, unit, source, follows,
+//!                              rest, stiffness
 //! joint_set.J.component.K.X  = the inputs and parameters of a component of kind X
 //! joint_set.J.output         = SEGMENT = "K", or a list of factors
 //! marker.M   = segment, at
 //! size.G     = segments (that are scaled by one factor)
 //! closure.L  = points (and distance), frames, or coupling
+//! posture.P  = sum (coordinates with factors), rest, stiffness, source
 //! port       = "name" in the same joint set, "set.name" in another, ".2" for a second output
 //! ```
 //!

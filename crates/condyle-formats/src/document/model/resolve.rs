@@ -2,13 +2,14 @@
 
 use super::blueprint::Blueprint;
 use super::draft::{ConditionDraft, Draft, Holder};
+use super::mirror::escaped;
 use crate::document::texts::{Name, Spot, Texts};
 use condyle_diagnostics::{Diagnostic, Read, Severity, Subject, did_you_mean, nearest};
 use condyle_math::{Affine, Vec3};
 use condyle_model::component::{Component, Place, PortType, Product};
 use condyle_model::model::{AXIS_LENGTH, ComponentId, Condition, JointSetId};
 use condyle_model::{
-    Closure, CoordinateId, CoordinateKind, Model, ModelBuilder, SegmentId, Signal,
+    Closure, CoordinateId, CoordinateKind, Model, ModelBuilder, PostureTerm, SegmentId, Signal,
 };
 use std::collections::{HashMap, HashSet};
 
@@ -177,6 +178,12 @@ impl Resolver<'_> {
             };
             let meaning = Meaning { source: id.into(), port, outputs: 1 };
             self.mean(&c.set, &c.name, meaning);
+            if let Some([rest, stiffness]) = c.held {
+                let name = format!("{}.{}", escaped(&c.set), escaped(&c.name.text));
+                self.places.insert(Subject::Posture(name.clone()), c.name.spot);
+                let (sum, source) = (vec![(id, 1.0)], c.source.clone());
+                self.builder.posture(PostureTerm { name, sum, rest, stiffness, source });
+            }
             coordinates.push((id, c.set.clone(), c.follows.clone()));
         }
         // All are added before any is connected: a component may reference one below it.
@@ -247,7 +254,57 @@ impl Resolver<'_> {
                 self.builder.closure(Closure { name: c.name.text.clone(), condition });
             }
         }
+        self.postures(&draft.postures);
         self.sizes(&draft.sizes);
+    }
+
+    fn postures(&mut self, postures: &[super::draft::PostureDraft]) {
+        for p in postures {
+            self.places.insert(Subject::Posture(p.name.text.clone()), p.name.spot);
+            // To the end, so that every unknown name is reported.
+            let sum: Vec<_> =
+                p.sum.iter().map(|(n, a)| Some((self.any_coordinate(n)?, *a))).collect();
+            let Some(sum) = sum.into_iter().collect::<Option<Vec<_>>>() else { continue };
+            let made = self.builder.coordinates();
+            let angles =
+                sum.iter().all(|(id, _)| made[id.index()].kind == CoordinateKind::Rotation);
+            self.builder.posture(PostureTerm {
+                name: p.name.text.clone(),
+                sum,
+                rest: p.rest * if angles { p.angle_unit } else { 1.0 },
+                stiffness: p.stiffness,
+                source: p.source.clone(),
+            });
+        }
+    }
+
+    /// A coordinate of any joint set: by its bare name where only one has it, else by `set.name`.
+    fn any_coordinate(&mut self, name: &Name) -> Option<CoordinateId> {
+        let parts = parts(&name.text);
+        let [bare] = &parts[..] else { return self.coordinate(name) };
+        let made = self.builder.coordinates();
+        let hits: Vec<usize> = (0..made.len()).filter(|&i| made[i].name == *bare).collect();
+        if let [index] = hits[..] {
+            return self.builder.coordinate_at(index);
+        }
+        // The coordinates of a joint that could not be read are not known.
+        if hits.is_empty() && self.broken.iter().any(|(_, part)| part.is_empty()) {
+            return None;
+        }
+        let (message, help) = if hits.is_empty() {
+            let known = made.iter().map(|c| c.name.as_str());
+            let otherwise = || "name a coordinate, alone or as `set.name`".to_owned();
+            (format!("unknown coordinate `{bare}`"), did_you_mean(bare, known, otherwise))
+        } else {
+            let mut sets: Vec<&String> =
+                self.names.keys().filter(|(_, n)| n == bare).map(|(set, _)| set).collect();
+            sets.sort();
+            let list: Vec<String> = sets.iter().map(|set| format!("`{set}.{bare}`")).collect();
+            let message = format!("{} joint sets have a coordinate `{bare}`", hits.len());
+            (message, format!("write {}", list.join(" or ")))
+        };
+        self.texts.error(name.spot, "model/unknown-name", message, help);
+        None
     }
 
     fn outputs(&mut self, outputs: &[super::draft::OutputDraft]) {

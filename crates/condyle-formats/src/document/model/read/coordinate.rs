@@ -67,6 +67,7 @@ impl ModelReader<'_> {
         coordinate.locked = self.flag(fields.get("locked"), "locked", false);
         coordinate.source =
             fields.get("source").and_then(|n| self.text(n, "source")).map(|n| n.text);
+        coordinate.held = self.rest(&fields, unit, coordinate.default[0]);
         coordinate.follows = fields.get("follows").and_then(|n| self.text(n, "follows"));
         coordinate
     }

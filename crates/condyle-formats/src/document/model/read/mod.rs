@@ -6,6 +6,7 @@ mod cone;
 mod contact;
 mod coordinate;
 mod custom;
+mod posture;
 mod shape;
 mod size;
 
@@ -54,7 +55,7 @@ impl ModelReader<'_> {
             }
             _ => {}
         }
-        for family in ["segment", "joint", "joint_set", "marker", "closure", "size"] {
+        for family in ["segment", "joint", "joint_set", "marker", "closure", "posture", "size"] {
             let Some(node) = top.get(family) else { continue };
             for entry in self.entries(node, family) {
                 match family {
@@ -63,6 +64,7 @@ impl ModelReader<'_> {
                     "joint_set" => self.joint_set(&mut draft, entry),
                     "marker" => self.marker(&mut draft, entry),
                     "closure" => self.closure(&mut draft, entry),
+                    "posture" => self.posture(&mut draft, entry),
                     _ => self.size(&mut draft, entry),
                 }
             }

@@ -6,7 +6,10 @@ use super::mirror::escaped;
 use condyle_math::function::{Curve, Function, FunctionOfSeveral};
 use condyle_math::{Affine, EulerOrder, Mat3, Vec3};
 use condyle_model::model::Condition;
-use condyle_model::{Coordinate, CoordinateKind, Model, Range, Segment, SegmentId, Signal, UpAxis};
+use condyle_model::{
+    Coordinate, CoordinateId, CoordinateKind, Model, PostureTerm, Range, Segment, SegmentId,
+    Signal, UpAxis,
+};
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 
@@ -66,8 +69,16 @@ impl Writer<'_> {
         for set in model.joint_sets() {
             line!(self, "\n[joint_set.{}]", key(&set.name));
         }
+        let short = self.short_postures();
         for coordinate in model.coordinates() {
             self.coordinate(coordinate);
+            let own = |p: &&PostureTerm| model.coordinate(p.sum[0].0) == coordinate;
+            if let Some(posture) = model.postures()[..short].iter().find(own) {
+                if posture.rest != coordinate.default[0] {
+                    line!(self, "rest = {}", number(posture.rest));
+                }
+                line!(self, "stiffness = {}", number(posture.stiffness));
+            }
         }
         for (index, named) in model.components().iter().enumerate() {
             let set = key(&self.set(named.joint_set.index()));
@@ -98,11 +109,44 @@ impl Writer<'_> {
             line!(self, "at = {}", vector(marker.point));
         }
         self.closures();
+        for posture in &model.postures()[short..] {
+            line!(self, "\n[posture.{}]", key(&posture.name));
+            let term = |(id, factor): &(CoordinateId, f64)| {
+                format!("{} = {}", self.port(None, Signal::Coordinate(*id)), number(*factor))
+            };
+            let sum: Vec<String> = posture.sum.iter().map(term).collect();
+            line!(self, "sum = {{ {} }}", sum.join(", "));
+            if posture.rest != 0.0 {
+                line!(self, "rest = {}", number(posture.rest));
+            }
+            line!(self, "stiffness = {}", number(posture.stiffness));
+            if let Some(source) = &posture.source {
+                line!(self, "source = {}", text(source));
+            }
+        }
         for group in model.size_groups() {
             line!(self, "\n[size.{}]", key(&group.name));
             let names = group.segments.iter().map(|&id| text(&model.segment(id).name));
             line!(self, "segments = [{}]", names.collect::<Vec<_>>().join(", "));
         }
+    }
+
+    /// How many posture terms, from the first, can be written with their coordinate: reading makes
+    /// those before all others, in the order of the coordinates.
+    fn short_postures(&self) -> usize {
+        let model = self.model;
+        let mut last = None;
+        let short = model.postures().iter().take_while(|posture| {
+            let [(id, 1.0)] = posture.sum[..] else { return false };
+            let coordinate = model.coordinate(id);
+            let set = self.set(coordinate.joint_set.index());
+            let in_order = last.is_none_or(|last| last < id.index());
+            last = Some(id.index());
+            in_order
+                && posture.source == coordinate.source
+                && posture.name == format!("{}.{}", escaped(&set), escaped(&coordinate.name))
+        });
+        short.count()
     }
 
     fn set(&self, index: usize) -> String {
