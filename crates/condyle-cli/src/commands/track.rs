@@ -75,7 +75,7 @@ impl Track {
             bar.finish_and_clear();
             warn_about(trial, &tracking.warnings);
             let report = tracking.report(&model);
-            failed |= !report.summary.failed.is_empty();
+            failed |= !report.summary.failed.is_empty() || !report.verdict.plausible;
             self.write_motion(&model, trial, &recording, &tracking)?;
             if let Some(path) = &self.errors {
                 let path = self.for_trial(path, trial, "csv");
@@ -180,8 +180,13 @@ fn json(trial: &Path, report: &Report, seconds: f64) -> Value {
         "failed_frames": failed.collect::<Vec<_>>(),
         "loop_error_m": report.loop_error,
         "iterations": report.iterations,
+        "objective_posture": s.objective_posture,
         "mostly_at_limit": report.mostly_at_limit,
         "swapped_labels": swaps.collect::<Vec<_>>(),
+        "verdict": {
+            "plausible": report.verdict.plausible,
+            "cause": report.verdict.cause.as_ref().map(|cause| cause.message.clone()),
+        },
         "markers": markers,
     })
 }
@@ -227,6 +232,9 @@ fn print_summary(
             first.frame,
             first.status.name()
         ));
+    }
+    if let Some(cause) = &report.verdict.cause {
+        text.push_str(&format!("  not plausible: {}\n", cause.sentence()));
     }
     output::print(text.as_bytes())
 }

@@ -1,6 +1,6 @@
 //! One recording on its way through a tracker.
 
-use super::{Request, Swap, Tracking};
+use super::{Request, Swap, Tracking, Verdict, verdict};
 use crate::matching::match_markers;
 use condyle_diagnostics::{Diagnostic, Error};
 use condyle_model::Model;
@@ -24,6 +24,7 @@ pub struct Job<'a> {
     warnings: Vec<Diagnostic>,
     threads: Option<usize>,
     robust: bool,
+    max_rms: f64,
 }
 
 impl<'a> Job<'a> {
@@ -67,7 +68,8 @@ impl<'a> Job<'a> {
         let (threads, robust) = (request.threads, request.robust);
         let rules = Rules { limits: request.limits, robust, ..Rules::default() };
         let tracker = Arc::new(Tracker::new(model, targets, rules));
-        Ok(Self { tracker, recording, markers, labels, frames, warnings, threads, robust })
+        let max_rms = request.max_rms;
+        Ok(Self { tracker, recording, markers, labels, frames, warnings, threads, robust, max_rms })
     }
 
     /// The tracker, which a [`Stream`](super::Stream) can share.
@@ -108,7 +110,13 @@ impl<'a> Job<'a> {
         };
         let (markers, labels) = (self.markers.clone(), self.labels.clone());
         let (frames, warnings) = (self.frames.clone(), self.warnings.clone());
-        Tracking { motion, answers, markers, labels, frames, warnings, swaps }
+        let verdict = Verdict::PLAUSIBLE;
+        let mut tracking =
+            Tracking { motion, answers, markers, labels, frames, warnings, swaps, verdict };
+        let (verdict, odd) = verdict::judge(&self.tracker, self.recording, &tracking, self.max_rms);
+        tracking.verdict = verdict;
+        tracking.warnings.extend(odd);
+        tracking
     }
 
     fn pass(

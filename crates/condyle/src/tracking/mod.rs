@@ -4,9 +4,14 @@
 //! solves it in a second step. What comes out is a [`Tracking`], summed up in a [`Report`]. Frames
 //! that come one by one are solved by a [`Stream`], over a [`Tracker`] that shares its model.
 
+mod assignment;
+mod cloud;
 mod job;
 mod report;
 mod request;
+mod sides;
+mod variant;
+mod verdict;
 
 pub use condyle_track::{
     CoordinateTarget, FrameAnswer, FrameStatus, MarkerTarget, OrientationTarget, PostureTarget,
@@ -15,6 +20,8 @@ pub use condyle_track::{
 pub use job::Job;
 pub use report::{FailedFrame, MarkerErrors, Report, Summary};
 pub use request::{CoordinateRequest, CoordinateValue, PostureRequest, Request};
+pub use variant::Variant;
+pub use verdict::Verdict;
 
 use condyle_diagnostics::{Diagnostic, Error};
 use condyle_model::Model;
@@ -37,6 +44,8 @@ pub struct Tracking {
     pub warnings: Vec<Diagnostic>,
     /// Labels that were found exchanged, by frame range (robust tracking only).
     pub swaps: Vec<Swap>,
+    /// Whether the fit can be believed.
+    pub verdict: Verdict,
 }
 
 /// Two labels that are swapped over some frames.

@@ -1,6 +1,6 @@
 //! Numbers about a whole tracking.
 
-use super::{Swap, Tracking};
+use super::{Swap, Tracking, Verdict};
 use condyle_model::{CoordinateId, Model};
 use condyle_track::{FrameAnswer, FrameStatus};
 
@@ -62,6 +62,8 @@ pub struct Report {
     pub swaps: Vec<Swap>,
     /// The markers used.
     pub markers: Vec<MarkerErrors>,
+    /// Whether the fit can be believed.
+    pub verdict: Verdict,
 }
 
 impl Tracking {
@@ -98,6 +100,7 @@ impl Tracking {
             mostly_at_limit: mostly.map(|(id, _)| model.coordinate_key(id)).collect(),
             swaps: self.swaps.clone(),
             markers: self.marker_errors(),
+            verdict: self.verdict.clone(),
         }
     }
 

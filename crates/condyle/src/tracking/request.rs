@@ -27,6 +27,9 @@ pub struct Request {
     pub limits: bool,
     /// Find swapped labels, and weigh markers down that are far off.
     pub robust: bool,
+    /// The largest RMS of marker errors that is plausible, in metres: 0.1, since a model that is not
+    /// scaled to its person is at 0.06 to 0.07.
+    pub max_rms: f64,
     /// Threads; `None` for as many as there are cores.
     pub threads: Option<usize>,
 }
@@ -76,6 +79,7 @@ impl Default for Request {
             closure_weight: f64::INFINITY,
             limits: true,
             robust: false,
+            max_rms: 0.1,
             threads: None,
         }
     }
