@@ -50,16 +50,22 @@ impl Cloud {
     /// that whose best turn about itself brings the clouds nearest. `None` where that is hardly better
     /// than `up` itself.
     pub(super) fn upward(&self, up: usize) -> Option<Direction> {
-        let directions = (0..3).flat_map(|axis| [(axis, true), (axis, false)]);
-        let scored = directions.map(|direction| (self.agreement(up, direction), direction));
-        let (best, direction) = scored.max_by(|a, b| a.0.total_cmp(&b.0))?;
-        let margin = 0.1 * (self.squares[0] * self.squares[1]).sqrt();
+        let (best, direction) = self.likeness(up);
         let upright = (up, true);
-        let clear = direction == upright || best > self.agreement(up, upright) + margin;
+        let clear = direction == upright || best > self.agreement(up, upright) + 0.1;
         clear.then_some(direction)
     }
 
-    /// The largest Σ q · R p over the turns R that take the axis `up` to a direction.
+    /// How alike the clouds are in the best of the six directions: 1 where one is the other, turned and
+    /// scaled; and that direction.
+    pub(super) fn likeness(&self, up: usize) -> (f64, Direction) {
+        let directions = (0..3).flat_map(|axis| [(axis, true), (axis, false)]);
+        let scored = directions.map(|direction| (self.agreement(up, direction), direction));
+        scored.fold((f64::NEG_INFINITY, (up, true)), |a, b| if b.0 > a.0 { b } else { a })
+    }
+
+    /// The largest Σ q · R p over the turns R that take the axis `up` to a direction, as a share of
+    /// √(Σ |p|² Σ |q|²).
     fn agreement(&self, up: usize, direction: Direction) -> f64 {
         // A right-handed frame whose third axis is `up`, and where one such turn takes it.
         let third = unit(direction);
@@ -67,13 +73,20 @@ impl Cloud {
         let to = [first, third.cross(first), third];
         let from = [(up + 1) % 3, (up + 2) % 3, up];
         let along = |i: usize, j: usize| Vec3::from(self.product[from[i]]).dot(to[j]);
-        along(2, 2) + (along(0, 0) + along(1, 1)).hypot(along(0, 1) - along(1, 0))
+        let sum = along(2, 2) + (along(0, 0) + along(1, 1)).hypot(along(0, 1) - along(1, 0));
+        sum / (self.squares[0] * self.squares[1]).sqrt().max(f64::MIN_POSITIVE)
     }
 
     /// The axis whose mirroring brings the clouds nearest as they stand.
     pub(super) fn mirrored(&self) -> usize {
         let correlation = |axis: &usize| self.product[*axis][*axis];
         (0..3).min_by(|a, b| correlation(a).total_cmp(&correlation(b))).unwrap_or(0)
+    }
+
+    /// The horizontal axis about which half a turn brings the clouds nearest.
+    pub(super) fn half_turn(&self, up: usize) -> usize {
+        let [a, b] = [(up + 1) % 3, (up + 2) % 3];
+        if self.product[a][a] >= self.product[b][b] { a } else { b }
     }
 }
 
@@ -117,7 +130,11 @@ mod tests {
         assert!((seen(|p| p.map(|x| 3.0 * x + 1.0)).ratio().unwrap() - 3.0).abs() < 1e-12);
         assert_eq!(seen(|_| [1.0; 3]).ratio(), None);
         assert_eq!(seen(|[x, y, z]| [x, y, -z]).mirrored(), 2);
+        assert_eq!(seen(|[x, y, z]| [x, -y, -z]).half_turn(1), 0);
+        assert_eq!(seen(|[x, y, z]| [-x, -y, z]).half_turn(1), 2);
         // A point of its own says nothing about directions.
-        assert_eq!(Cloud::default().upward(1), Some((1, true)).filter(|_| false));
+        assert_eq!(Cloud::default().likeness(1).0, 0.0);
+        let [same, mirrored] = [seen(|p| p), seen(|[x, y, z]| [x, y, -z])].map(|c| c.likeness(1).0);
+        assert!((same - 1.0).abs() < 1e-12 && mirrored < 0.99, "{same} {mirrored}");
     }
 }

@@ -1,9 +1,13 @@
 //! Whether a tracking can be what happened, and if not, why: likely causes are tried.
 //!
 //! A cause is a change to the recording. A few frames, spread over the trial, are tracked from first
-//! guesses with that change, and compared with the trial's answers for the same frames. Causes are tried
-//! only where the fit is worse than [`WORTH_TRYING`], or than that share of the body's size: most trials
-//! with a scaled model fit better.
+//! guesses with that change, and compared with the trial's answers for the same frames.
+//!
+//! That costs as much as hundreds of frames, and a trial that fits is not asked. Where the fit is worse
+//! than [`WORTH_TRYING`] or that share of the body's size, a cause is tried if it makes the markers at least
+//! as like those of the model at rest as they were ([`Cloud::likeness`]: what is mirrored, or has its sides
+//! exchanged, is less like them); where it is worse than half of that, if it makes them clearly more alike;
+//! where it is worse than the bound, always.
 
 use super::assignment::assign;
 use super::cloud::{Cloud, Direction};
@@ -11,7 +15,7 @@ use super::variant::axis_name;
 use super::{Tracking, Variant, sides};
 use condyle_diagnostics::Diagnostic;
 use condyle_math::{Mat3, Vec3};
-use condyle_model::{CoordinateId, Mode, Pose, SegmentId, UpAxis};
+use condyle_model::{CoordinateId, CoordinateKind, Mode, Pose, SegmentId, UpAxis};
 use condyle_motion::Recording;
 use condyle_track::{FrameAnswer, Scratch, Tracker};
 
@@ -39,9 +43,12 @@ impl Verdict {
 /// A fit is looked into from this RMS on, in metres, or from this share of the size of the body.
 const WORTH_TRYING: f64 = 0.025;
 const SHARE_OF_SIZE: f64 = 0.02;
+/// How much more like the model at rest a cause must make the markers to be tried.
+const AS_LIKE: f64 = -0.002;
+const MORE_LIKE: f64 = 0.01;
 /// How many frames are tried.
 const FRAMES: usize = 12;
-/// How many of them are tried before one without promise is given up.
+/// How many of them, those that fit worst, are tried before a cause without promise is given up.
 const FIRST_FRAMES: usize = 3;
 /// What lowers the error of the first frames to less than this share has promise.
 const PROMISE: f64 = 0.75;
@@ -51,6 +58,10 @@ const HALF: f64 = 0.5;
 const GUESSES: usize = 4;
 /// Another cause is named, too, where its error is less than so many times that of the best.
 const AS_GOOD: f64 = 1.5;
+/// Two labels may be exchanged where that leaves less than this share of their squared errors, and these
+/// are more than this share of those of all.
+const EXCHANGED: f64 = 0.3;
+const FAR_OFF: f64 = 0.1;
 /// Rounds of tracking and assigning labels anew.
 const ROUNDS: usize = 5;
 /// Directions that a body with unknown labels may face.
@@ -74,23 +85,34 @@ pub(super) fn judge(
     };
     let upward = trial.upward();
     let worth = WORTH_TRYING.min(SHARE_OF_SIZE * trial.size);
-    if rms <= worth.min(max_rms) {
-        let lying = upward.and_then(|direction| trial.lying(direction));
-        return (Verdict::PLAUSIBLE, lying.into_iter().collect());
-    }
-    let mut tried = trial.try_causes(upward);
-    let halves = |tried: &[(Variant, f64)], base: f64| {
-        tried.first().is_some_and(|(_, rms)| *rms <= HALF * base)
+    let mut tried = match rms {
+        _ if rms > max_rms => trial.try_causes(upward, f64::NEG_INFINITY),
+        _ if rms > worth => trial.try_causes(upward, AS_LIKE),
+        _ if rms > 0.5 * worth => trial.try_causes(upward, MORE_LIKE),
+        _ => vec![],
     };
-    if !halves(&tried, trial.rms()) && rms > max_rms {
-        tried.extend(trial.permuted());
-        tried.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let base = trial.rms();
+    let least = |tried: &[(Variant, f64)]| tried.first().map_or(f64::INFINITY, |(_, rms)| *rms);
+    if rms > max_rms && least(&tried) > PROMISE * base {
+        tried = trial.permuted().into_iter().collect();
     }
-    if halves(&tried, trial.rms()) {
-        return (trial.caused(&tried), vec![]);
+    let least = least(&tried);
+    if least <= HALF * base || (rms > max_rms && least <= PROMISE * base) {
+        let cause = Diagnostic::error("track/implausible", trial.compared(&tried));
+        let remedy = tried.into_iter().next().map(|(cause, _)| cause);
+        return (Verdict::because(cause.with_help("nothing was changed"), remedy), vec![]);
     }
-    let lying = upward.and_then(|direction| trial.lying(direction));
-    (bound(tracking, rms, max_rms), lying.into_iter().collect())
+    let mut odd: Vec<Diagnostic> = vec![];
+    if rms > worth {
+        odd.extend(trial.exchanged());
+    }
+    if least <= PROMISE * base {
+        let message = format!("perhaps {}", trial.compared(&tried));
+        odd.push(Diagnostic::warning("track/perhaps", message));
+    } else {
+        odd.extend(upward.and_then(|direction| trial.lying(direction)));
+    }
+    (bound(tracking, rms, max_rms), odd)
 }
 
 /// The verdict by the bound alone, where no cause is known.
@@ -146,7 +168,8 @@ fn nothing_moves(tracker: &Tracker) -> Option<Diagnostic> {
 /// A few frames of a tracking, for trying causes on.
 struct Trial<'a> {
     tracker: &'a Tracker,
-    scratch: Scratch,
+    /// Made when a frame is first tried.
+    scratch: Option<Scratch>,
     /// For each marker target its label in the recording.
     labels: &'a [usize],
     /// The frames, with all labels, and their numbers among those tracked.
@@ -191,7 +214,7 @@ impl<'a> Trial<'a> {
         let size = 2.0 * places.iter().map(|&p| (p - middle).norm()).fold(0.0, f64::max);
         Some(Self {
             tracker,
-            scratch: Scratch::new(tracker),
+            scratch: None,
             labels: &tracking.labels,
             sample,
             answers: numbers.iter().map(|n| &tracking.answers[*n]).collect(),
@@ -208,9 +231,14 @@ impl<'a> Trial<'a> {
         mean(self.answers.iter().map(|a| a.rms()))
     }
 
-    /// The places at rest and in one of the frames, of the markers seen.
-    fn cloud(&self, frame: usize) -> Cloud {
-        let seen = self.sample.frame(frame);
+    /// How like the markers at rest those of a sample are.
+    fn likeness(&self, sample: &Recording) -> f64 {
+        mean((0..self.numbers.len()).map(|frame| self.cloud(sample, frame).likeness(self.up()).0))
+    }
+
+    /// The places at rest and in one of the frames of a sample, of the markers seen.
+    fn cloud(&self, sample: &Recording, frame: usize) -> Cloud {
+        let seen = sample.frame(frame);
         let pairs =
             self.places.iter().zip(self.labels).filter_map(|(&place, &label)| {
                 Some((place, Vec3::from(seen.get(label)?.position()?)))
@@ -228,14 +256,15 @@ impl<'a> Trial<'a> {
     /// Which way the body's upward axis points in all frames but one, where that is not up.
     fn upward(&self) -> Option<Direction> {
         let up = self.up();
-        let directions: Vec<Option<Direction>> =
-            (0..self.numbers.len()).map(|frame| self.cloud(frame).upward(up)).collect();
+        let directions: Vec<Option<Direction>> = (0..self.numbers.len())
+            .map(|frame| self.cloud(&self.sample, frame).upward(up))
+            .collect();
         let middle = directions.get(directions.len() / 2).copied().flatten()?;
         let others = directions.iter().filter(|d| **d != Some(middle)).count();
         (middle != (up, true) && others <= 1).then_some(middle)
     }
 
-    /// A warning where the segment that carries all others lies, too.
+    /// A warning where the segment that carries all others lies, too, in three quarters of the frames.
     fn lying(&mut self, (axis, positive): Direction) -> Option<Diagnostic> {
         let root = self.root()?;
         let (tracker, up) = (self.tracker, self.up());
@@ -249,7 +278,7 @@ impl<'a> Trial<'a> {
             turned(&answer.coordinates).is_some_and(|now| (now * at_rest).dot(up_axis) < HALF)
         };
         let lying = self.answers.iter().filter(lies).count();
-        if lying + 1 < self.answers.len() {
+        if 4 * lying < 3 * self.answers.len() {
             return None;
         }
         let [sign, name] =
@@ -275,20 +304,28 @@ impl<'a> Trial<'a> {
             common.retain(|segment| of_this.contains(segment));
         }
         let lowest = *common.first()?;
-        (self.tracker.program().segment_directions(lowest).len() >= 6).then_some(lowest)
+        let moves = |&&(direction, _): &&(u32, u32)| {
+            let mut ids = model.coordinate_ids();
+            let id = ids.find(|&id| model.tangent_range(id).contains(&(direction as usize)));
+            // Those of some files are of no known kind.
+            let shifts = [CoordinateKind::Translation, CoordinateKind::Other];
+            id.is_some_and(|id| shifts.contains(&model.coordinate(id).kind))
+        };
+        let directions = self.tracker.program().segment_directions(lowest);
+        directions.iter().find(moves).map(|_| lowest)
     }
 
     /// The causes that may be, each with the RMS of the frames without it; the best first. Those
-    /// without promise are left out.
-    fn try_causes(&mut self, upward: Option<Direction>) -> Vec<(Variant, f64)> {
+    /// that do not gain so much likeness, or without promise, are left out.
+    fn try_causes(&mut self, upward: Option<Direction>, gain: f64) -> Vec<(Variant, f64)> {
         let mut cloud = Cloud::default();
-        (0..self.numbers.len()).for_each(|frame| cloud += self.cloud(frame));
+        (0..self.numbers.len()).for_each(|frame| cloud += self.cloud(&self.sample, frame));
         let mut causes = vec![];
         let power = cloud.ratio().map_or(0.0, |ratio| -ratio.log10().round());
         if power != 0.0 && power.abs() <= 6.0 {
             causes.push(Variant::Scaled(10f64.powi(power as i32)));
         }
-        causes.extend(upward.map(|direction| self.upright(direction)));
+        causes.extend(upward.map(|direction| self.upright(direction, &cloud)));
         let up = [Vec3::X, Vec3::Y, Vec3::Z][self.up()];
         let pairs = sides::pairs(self.names, &self.places, up);
         if !pairs.is_empty() {
@@ -296,8 +333,15 @@ impl<'a> Trial<'a> {
             causes.push(Variant::Exchanged(labels.collect()));
         }
         causes.push(Variant::Mirrored(cloud.mirrored()));
+        let now = self.likeness(&self.sample);
         let tried = causes.into_iter().filter_map(|cause| {
-            let rms = self.with(&cause)?;
+            // Sizes and turns make no difference to likeness; they are not guessed without a reason.
+            let always = matches!(cause, Variant::Scaled(_) | Variant::Turned { .. });
+            let changed = cause.of(&self.sample);
+            if !always && self.likeness(&changed) < now + gain {
+                return None;
+            }
+            let rms = self.with(&changed)?;
             Some((cause, rms))
         });
         let mut tried: Vec<_> = tried.collect();
@@ -306,29 +350,27 @@ impl<'a> Trial<'a> {
     }
 
     /// The turn that brings what points in a direction up.
-    fn upright(&self, (axis, positive): Direction) -> Variant {
+    fn upright(&self, (axis, positive): Direction, cloud: &Cloud) -> Variant {
         let up = self.up();
         if axis == up {
-            return Variant::Turned { axis: (up + 1) % 3, quarters: 2 };
+            return Variant::Turned { axis: cloud.half_turn(up), quarters: 2 };
         }
         // A quarter turn about the third axis takes each axis to the next.
         let next = (axis + 1) % 3 == up;
         Variant::Turned { axis: 3 - axis - up, quarters: if next == positive { 1 } else { 3 } }
     }
 
-    /// RMS of the frames with a change, tracked from first guesses; `None` if it has no promise.
-    fn with(&mut self, cause: &Variant) -> Option<f64> {
-        let changed = cause.of(&self.sample);
+    /// RMS of the frames of a changed sample, tracked from first guesses; `None` if it has no promise.
+    fn with(&mut self, changed: &Recording) -> Option<f64> {
         let count = self.numbers.len();
-        // Frames from all over the trial come first.
-        let step = count.div_ceil(FIRST_FRAMES).max(1);
-        let order: Vec<usize> = (0..step).flat_map(|i| (i..count).step_by(step)).collect();
+        let mut order: Vec<usize> = (0..count).collect();
+        order.sort_by(|&a, &b| self.answers[b].rms().total_cmp(&self.answers[a].rms()));
         let mut sums = [0.0; 2];
         for (done, &frame) in order.iter().enumerate() {
             if done == FIRST_FRAMES && sums[0] > PROMISE * sums[1] {
                 return None;
             }
-            sums[0] += self.solved(&changed, frame).rms();
+            sums[0] += self.solved(changed, frame).rms();
             sums[1] += self.answers[frame].rms();
         }
         Some(sums[0] / count as f64)
@@ -338,7 +380,8 @@ impl<'a> Trial<'a> {
     fn solved(&mut self, sample: &Recording, frame: usize) -> FrameAnswer {
         let row = sample.frame(frame);
         let seen: Vec<_> = self.labels.iter().map(|&label| row.get(label)?.position()).collect();
-        self.tracker.solve_first(&mut self.scratch, &seen, self.numbers[frame], GUESSES)
+        let scratch = self.scratch.get_or_insert_with(|| Scratch::new(self.tracker));
+        self.tracker.solve_first(scratch, &seen, self.numbers[frame], GUESSES)
     }
 
     /// Labels assigned anew to the markers that they are nearest to, in a few rounds; the best of some
@@ -373,10 +416,7 @@ impl<'a> Trial<'a> {
     /// Where the markers may be in each frame whatever their labels say: as tracked, and as at rest
     /// about the middle of those seen, turned about the upward axis.
     fn beginnings(&mut self) -> Vec<Vec<Vec<Vec3>>> {
-        let mut beginnings = vec![];
-        let tracked =
-            |answer: &&FrameAnswer| places(self.tracker, &answer.coordinates, &mut self.pose);
-        beginnings.extend(self.answers.iter().map(tracked).collect::<Option<Vec<_>>>());
+        let mut beginnings: Vec<_> = self.tracked().into_iter().collect();
         let up = [Vec3::X, Vec3::Y, Vec3::Z][self.up()];
         let middle = |points: &mut dyn Iterator<Item = Vec3>| {
             let (sum, n) = points.fold((Vec3::ZERO, 0.0), |(sum, n), p| (sum + p, n + 1.0));
@@ -434,19 +474,44 @@ impl<'a> Trial<'a> {
         Variant::Permuted(from)
     }
 
-    /// The verdict where the best of the causes tried halves the error.
-    fn caused(&self, tried: &[(Variant, f64)]) -> Verdict {
-        let Some((cause, rms)) = tried.first() else { return Verdict::PLAUSIBLE };
-        let alike = tried.iter().filter(|(_, other)| *other < AS_GOOD * rms);
+    /// The best of the causes tried, and those that are as good, with the errors.
+    fn compared(&self, tried: &[(Variant, f64)]) -> String {
+        let least = tried.first().map_or(0.0, |(_, rms)| *rms);
+        let alike = tried.iter().filter(|(_, other)| *other <= AS_GOOD * least);
         let names: Vec<String> = alike.map(|(variant, _)| variant.to_string()).collect();
-        let message = format!(
+        format!(
             "{}: put right, the marker error is {:.1} mm RMS instead of {:.1}",
             names.join(", or "),
-            1e3 * rms,
+            1e3 * least,
             1e3 * self.rms(),
-        );
-        let said = Diagnostic::error("track/implausible", message);
-        Verdict::because(said.with_help("nothing was changed"), Some(cause.clone()))
+        )
+    }
+
+    /// A warning about pairs of labels that fit far better with their names exchanged, throughout.
+    fn exchanged(&mut self) -> Option<Diagnostic> {
+        let tracked = self.tracked()?;
+        let (costs, n) = (self.costs(&tracked), self.labels.len());
+        let all: f64 = (0..n).map(|i| costs[i * n + i]).sum();
+        let share = FAR_OFF * all;
+        let mut pairs = vec![];
+        for a in 0..n {
+            for b in a + 1..n {
+                let before = costs[a * n + a] + costs[b * n + b];
+                let after = costs[a * n + b] + costs[b * n + a];
+                if after < EXCHANGED * before && before > share {
+                    let label = |marker: usize| &self.sample.labels[self.labels[marker]];
+                    pairs.push(format!("`{}` and `{}`", label(a), label(b)));
+                }
+            }
+        }
+        let message = format!("labels may be exchanged throughout: {}", pairs.join(", "));
+        (!pairs.is_empty()).then(|| Diagnostic::warning("track/exchanged", message))
+    }
+
+    /// Where the markers are in each frame as tracked.
+    fn tracked(&mut self) -> Option<Vec<Vec<Vec3>>> {
+        let of = |a: &&FrameAnswer| places(self.tracker, &a.coordinates, &mut self.pose);
+        self.answers.iter().map(of).collect()
     }
 }
 
