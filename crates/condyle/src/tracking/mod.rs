@@ -9,7 +9,10 @@ mod cloud;
 mod job;
 mod report;
 mod request;
+#[cfg(any(feature = "document", feature = "opensim"))]
+mod setup;
 mod sides;
+mod unused;
 mod variant;
 mod verdict;
 
@@ -20,6 +23,7 @@ pub use condyle_track::{
 pub use job::Job;
 pub use report::{FailedFrame, MarkerErrors, Report, Summary};
 pub use request::{CoordinateRequest, CoordinateValue, PostureRequest, Request};
+pub use unused::{Unused, UnusedMarkers};
 pub use variant::Variant;
 pub use verdict::Verdict;
 
@@ -44,6 +48,8 @@ pub struct Tracking {
     pub warnings: Vec<Diagnostic>,
     /// Labels that were found exchanged, by frame range (robust tracking only).
     pub swaps: Vec<Swap>,
+    /// The markers and labels that were not used.
+    pub unused: UnusedMarkers,
     /// Whether the fit can be believed.
     pub verdict: Verdict,
 }

@@ -1,6 +1,6 @@
 //! Numbers about a whole tracking.
 
-use super::{Swap, Tracking, Verdict};
+use super::{Swap, Tracking, UnusedMarkers, Verdict};
 use condyle_model::{CoordinateId, Model};
 use condyle_track::{FrameAnswer, FrameStatus};
 
@@ -62,6 +62,8 @@ pub struct Report {
     pub swaps: Vec<Swap>,
     /// The markers used.
     pub markers: Vec<MarkerErrors>,
+    /// The markers and labels that were not used.
+    pub unused: UnusedMarkers,
     /// Whether the fit can be believed.
     pub verdict: Verdict,
 }
@@ -100,6 +102,7 @@ impl Tracking {
             mostly_at_limit: mostly.map(|(id, _)| model.coordinate_key(id)).collect(),
             swaps: self.swaps.clone(),
             markers: self.marker_errors(),
+            unused: self.unused.clone(),
             verdict: self.verdict.clone(),
         }
     }
