@@ -242,7 +242,7 @@ fn check_weight(weight: f64, name: &str) -> Result<(), Error> {
     if weight == 0.0 || (1.0 / HEAVIEST..=HEAVIEST).contains(&weight) {
         return Ok(());
     }
-    let message = format!("the weight {weight} of `{name}` is out of bounds");
+    let message = format!("the weight {weight:e} of `{name}` is out of bounds");
     let help = "give 0, or a number from 1e-9 to 1e9";
     Err(Error::new("track/weight", message).with_help(help))
 }

@@ -122,12 +122,12 @@ fn unused(side: &str, other: &str, unused: &[Unused]) -> String {
     if unused.is_empty() {
         return String::new();
     }
-    let mut unused: Vec<&Unused> = unused.iter().collect();
-    unused.sort_by_key(|one| one.partner.is_none());
-    let said = unused.iter().map(|one| match &one.partner {
+    let mut sorted: Vec<&Unused> = unused.iter().collect();
+    sorted.sort_by_key(|one| one.partner.is_none());
+    let said = sorted.iter().map(|one| match &one.partner {
         Some(partner) => format!("`{}` (is it the {other}'s `{partner}`?)", one.name),
         None => format!("`{}`", one.name),
     });
-    let said: Vec<String> = said.collect();
-    format!("  {} markers of the {side} are not used: {}\n", unused.len(), few(said.into_iter()))
+    let noun = if unused.len() == 1 { "marker" } else { "markers" };
+    format!("  {} {noun} of the {side} not used: {}\n", unused.len(), few(said))
 }
