@@ -291,3 +291,47 @@ fn a_table_names_the_first_that_the_model_has() {
     assert_eq!(tracking.markers, ["STERNUM"]);
     assert!(tracking.warnings.iter().any(|w| w.to_string().contains("did you mean `NECK`?")));
 }
+
+/// The shared recording of a walk, its model scaled by hand, and the permuted labels beside it.
+#[test]
+fn a_real_walk_is_plausible_until_something_is_done_to_it() {
+    let shared = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
+    let folder = shared.join("data/knee/opencap4");
+    if !folder.is_dir() {
+        println!("skipped: the shared data folder is absent");
+        return;
+    }
+    let model = condyle::open::model(&folder.join("manually_scaled.osim")).unwrap().value;
+    let open = |path: &std::path::Path| condyle::open::recording(path).unwrap().value;
+    let clean = open(&folder.join("walking1.trc"));
+    let verdict = |recording: &Recording| {
+        let request = Request { threads: Some(1), ..Request::default() };
+        let tracking = track(&model, recording, &request, &mut |_, _| {}).unwrap();
+        let said = tracking.verdict.cause.map(|cause| cause.message);
+        assert_eq!(tracking.verdict.plausible, said.is_none());
+        (said, tracking.warnings.iter().any(|w| w.code == "track/lying"))
+    };
+    assert_eq!(verdict(&clean), (None, false));
+    let partner = |label: &str| {
+        let (side, rest) = label.split_at(1);
+        let names = if side == "L" { ["R", "r"] } else { ["L", "L"] };
+        names.iter().find_map(|side| clean.marker(&format!("{side}{rest}")))
+    };
+    let left = clean.labels.iter().enumerate().filter(|(_, label)| label.starts_with('L'));
+    let sides = left.filter_map(|(i, label)| Some([i, partner(label)?])).collect();
+    let turned = |axis, quarters| Variant::Turned { axis, quarters };
+    for (variant, words) in [
+        (Variant::Exchanged(sides), "left and right labels are exchanged"),
+        (Variant::Mirrored(2), "mirrored"),
+        (turned(0, 2), "upside down"),
+        (Variant::Scaled(1000.0), "1000 times too large"),
+        (Variant::Scaled(0.001), "1000 times too small"),
+    ] {
+        let said = verdict(&variant.of(&clean)).0.unwrap_or_default();
+        assert!(said.contains(words), "{variant}: {said}");
+    }
+    // A recording whose z axis points up fits: the body lies.
+    assert_eq!(verdict(&turned(0, 1).of(&clean)), (None, true));
+    let permuted = open(&shared.join("cases/tracking/labels_permuted.trc"));
+    assert!(verdict(&permuted).0.unwrap_or_default().contains("labels are permuted"));
+}
