@@ -134,10 +134,18 @@ fn postures_and_values_are_asked_for_by_name() {
     let at = |request: &Request| run(&model, &recording, request);
     let free = at(&Request::default());
     // So stiff that markers of a few centimetres have no say.
-    let stiff = |rest| Request {
+    let stiff = |rest: f64| Request {
         postures: vec![
-            PostureRequest { coordinates: vec![(name.clone(), 2.0)], rest, stiffness: 1e4 },
-            PostureRequest { coordinates: vec![("nose".to_owned(), 1.0)], rest, stiffness: 1.0 },
+            PostureRequest {
+                coordinates: vec![(name.clone(), 2.0)],
+                rest: Some(rest),
+                stiffness: 1e4,
+            },
+            PostureRequest {
+                coordinates: vec![("nose".to_owned(), 1.0)],
+                rest: None,
+                stiffness: 1.0,
+            },
         ],
         ..Request::default()
     };

@@ -4,7 +4,7 @@
 //! documentation.
 
 #[cfg(feature = "document")]
-use crate::document::{self, Document};
+use crate::document::{self, Document, Kind, names::NameTable, setup::TrackSetup};
 #[cfg(feature = "opensim")]
 use crate::opensim::{self, setup};
 #[cfg(feature = "poses")]
@@ -27,6 +27,8 @@ pub enum ContentKind {
     Poses,
     /// A setup of inverse kinematics, or its tasks.
     Setup,
+    /// A table of names.
+    Names,
     /// A scene for viewers.
     Scene,
 }
@@ -41,6 +43,7 @@ impl ContentKind {
             Self::Motion => "a motion",
             Self::Poses => "poses",
             Self::Setup => "a tracking setup",
+            Self::Names => "a table of names",
             Self::Scene => "a scene",
         }
     }
@@ -62,6 +65,12 @@ pub enum Content {
     /// Poses by the names of coordinates.
     #[cfg(feature = "poses")]
     Poses(Poses),
+    /// A setup that people write.
+    #[cfg(feature = "document")]
+    TrackSetup(TrackSetup),
+    /// A table of names.
+    #[cfg(feature = "document")]
+    Names(NameTable),
     /// A setup of inverse kinematics.
     #[cfg(feature = "opensim")]
     Setup(setup::IkSetup),
@@ -82,6 +91,10 @@ impl Content {
             Self::Table(_) => ContentKind::Motion,
             #[cfg(feature = "poses")]
             Self::Poses(_) => ContentKind::Poses,
+            #[cfg(feature = "document")]
+            Self::TrackSetup(_) => ContentKind::Setup,
+            #[cfg(feature = "document")]
+            Self::Names(_) => ContentKind::Names,
             #[cfg(feature = "opensim")]
             Self::Setup(_) | Self::Tasks(_) => ContentKind::Setup,
         }
@@ -141,12 +154,17 @@ pub const FORMATS: &[Format] = &[
         name: "toml",
         title: "documents that people write",
         endings: &["toml"],
-        reads: &[ContentKind::Model],
+        reads: &[ContentKind::Model, ContentKind::Setup, ContentKind::Names],
         writes: &[ContentKind::Model],
         sniff: |bytes| document::kind(bytes).is_some(),
         read: |bytes, include| {
-            let read = document::read(utf8(bytes)?, include)?;
-            Ok(read.map(Content::Document))
+            let text = utf8(bytes)?;
+            Ok(match document::kind(bytes) {
+                Some(Kind::Setup) => document::setup::read(text, include)?.map(Content::TrackSetup),
+                Some(Kind::Names) => document::names::read(text, include)?.map(Content::Names),
+                // Those that are no document at all get the message of a model.
+                _ => document::read(text, include)?.map(Content::Document),
+            })
         },
     },
     #[cfg(feature = "opensim")]

@@ -1,7 +1,12 @@
 //! Files by path, with errors and warnings that carry the path.
 
 use crate::shipped;
+use crate::tracking::Request;
+#[cfg(feature = "document")]
+use condyle_diagnostics::did_you_mean;
 use condyle_diagnostics::{Diagnostic, Error, Read, nearest};
+#[cfg(feature = "document")]
+use condyle_formats::document::{self, names::NameTable};
 #[cfg(feature = "opensim")]
 use condyle_formats::opensim::setup::{IkSetup, IkTasks};
 #[cfg(feature = "poses")]
@@ -254,9 +259,81 @@ pub fn setup(path: &Path) -> Result<Read<IkSetup>, OpenError> {
     if let Content::Setup(value) = value {
         return Ok(Read { value, warnings });
     }
-    let error = Error::new("setup/no-tool", "the file holds tasks without their tool")
-        .with_help("give the setup that names them");
+    let error = Error::new("setup/no-tool", "the file holds no setup of OpenSim's tool")
+        .with_help("read tasks alone, and setups that people write, as a request");
     Err(failed(path, Cause::Content { error, text: None }))
+}
+
+/// What a setup of tracking asks for, of OpenSim or written by people, with the files that it names;
+/// tasks of OpenSim may stand alone.
+///
+/// # Errors
+/// As [`content`], of the setup and of the files that it names.
+pub fn request(path: &Path) -> Result<Read<Request>, OpenError> {
+    let Read { value, mut warnings } = content(path, Some(ContentKind::Setup))?;
+    let mut request = match &value {
+        #[cfg(feature = "opensim")]
+        Content::Setup(setup) => Request::from_setup(setup),
+        #[cfg(feature = "opensim")]
+        Content::Tasks(tasks) => Request::from_tasks(tasks),
+        #[cfg(feature = "document")]
+        Content::TrackSetup(setup) => Request::from_document(setup),
+        _ => return Err(failed(path, Cause::Format { wanted: Some(ContentKind::Setup) })),
+    };
+    #[cfg(feature = "opensim")]
+    if let Content::Setup(setup) = &value
+        && let Some(name) = &setup.coordinate_file
+        && request.wants_values()
+    {
+        let path = beside(path, name);
+        let read = table(&path)?;
+        warnings.extend(read.warnings.into_iter().map(|said| of_file(&path, said)));
+        request.coordinate_values = Some(read.value);
+    }
+    #[cfg(feature = "document")]
+    if let Content::TrackSetup(setup) = &value
+        && let Some(name) = &setup.names
+    {
+        let path = match shipped::name_table(name) {
+            Some(_) => PathBuf::from(name),
+            None => beside(path, name),
+        };
+        let read = names(&path)?;
+        warnings.extend(read.warnings.into_iter().map(|said| of_file(&path, said)));
+        request.names = read.value;
+    }
+    Ok(Read { value: request, warnings })
+}
+
+/// A warning about a file that another names.
+fn of_file(path: &Path, said: Diagnostic) -> Diagnostic {
+    Diagnostic::new(said.severity, said.code, located(path, &said))
+}
+
+/// Opens a table of names; where there is no such file, that of a [`shipped`] one.
+///
+/// # Errors
+/// As [`content`].
+#[cfg(feature = "document")]
+pub fn names(path: &Path) -> Result<Read<NameTable>, OpenError> {
+    if let Some(text) = path.to_str().filter(|_| !path.is_file()).and_then(shipped::name_table) {
+        let read = document::names::read(text, &mut |_| Err("it stands alone".to_owned()));
+        return read
+            .map_err(|error| failed(path, Cause::Content { error, text: Some(text.to_owned()) }));
+    }
+    let word = path.to_str().filter(|word| !word.contains(['.', '/', '\\']) && !path.exists());
+    if let Some(word) = word {
+        let shipped: Vec<&str> = shipped::name_tables().collect();
+        let message = format!("`{word}` is neither a file nor a shipped table of names");
+        let all = || format!("shipped are: {}", shipped.join(", "));
+        let help = did_you_mean(word, shipped.iter().copied(), all);
+        let error = Error::new("file/names", message).with_help(help);
+        return Err(failed(path, Cause::Content { error, text: None }));
+    }
+    only(path, ContentKind::Names, |content| match content {
+        Content::Names(table) => Some(table),
+        _ => None,
+    })
 }
 
 /// A motion of a model, from a table whose columns are named after its coordinates.

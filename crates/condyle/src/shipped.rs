@@ -46,6 +46,28 @@ const MODELS: &[(&str, &str)] = &[];
 const PARTS: &[(&str, &str)] =
     &[("parts/human-markers.toml", include_str!("../models/parts/human-markers.toml"))];
 
+/// Name and text of every shipped table of names, by name.
+#[cfg(feature = "document")]
+const NAME_TABLES: &[(&str, &str)] = &[
+    ("cmu", include_str!("../names/cmu.toml")),
+    ("gait2392", include_str!("../names/gait2392.toml")),
+    ("isb", include_str!("../names/isb.toml")),
+    ("opencap", include_str!("../names/opencap.toml")),
+    ("plug-in-gait", include_str!("../names/plug-in-gait.toml")),
+];
+
+/// The names of all shipped tables of marker names, in alphabetical order.
+#[cfg(feature = "document")]
+pub fn name_tables() -> impl Iterator<Item = &'static str> {
+    NAME_TABLES.iter().map(|(name, _)| *name)
+}
+
+/// The text of a shipped table of marker names; `None` if none has that name.
+#[cfg(feature = "document")]
+pub fn name_table(name: &str) -> Option<&'static str> {
+    NAME_TABLES.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}
+
 /// The names of all shipped models, in alphabetical order.
 pub fn names() -> impl Iterator<Item = &'static str> {
     MODELS.iter().map(|(name, _)| *name)

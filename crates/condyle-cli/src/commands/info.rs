@@ -17,7 +17,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub(crate) struct Info {
     /// A model (a file, or the name of a shipped one), a marker recording, a motion or another table,
-    /// or a setup of inverse kinematics.
+    /// a setup of tracking, or a table of names.
     file: PathBuf,
     /// One JSON document on standard output, in radians and metres.
     #[arg(long)]
@@ -45,6 +45,10 @@ fn to_json(content: &Content) -> Value {
         Content::Table(table) => table::to_json(table),
         Content::Setup(setup) => setup::to_json(setup),
         Content::Tasks(tasks) => setup::tasks_to_json(tasks),
+        Content::Names(table) => json!({
+            "kind": "names",
+            "names": table.iter().cloned().collect::<std::collections::BTreeMap<_, _>>(),
+        }),
         other => json!({ "kind": other.kind().name() }),
     }
 }
@@ -57,6 +61,8 @@ fn to_text(content: &Content) -> String {
         Content::Table(table) => table::to_text(table),
         Content::Setup(setup) => setup::to_text(setup),
         Content::Tasks(tasks) => setup::tasks_to_text(tasks),
+        Content::TrackSetup(written) => setup::written_to_text(written),
+        Content::Names(table) => format!("a table of {} names\n", table.len()),
         other => format!("{}\n", other.kind().name()),
     }
 }

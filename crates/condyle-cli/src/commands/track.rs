@@ -1,15 +1,18 @@
 //! `condyle track`: marker recordings in, motion out.
 
-use super::{Limits, Outcome};
+mod report;
+mod request;
+
+use super::Outcome;
 use crate::failure::{Failure, warn_about, warned};
 use crate::motion_format;
 use crate::output;
 use crate::progress::frames_bar;
 use clap::Args;
 use condyle::formats::{Recording, csv};
-use condyle::tracking::{Faulty, Job, MarkerErrors, Report, Request, Tracking};
+use condyle::tracking::{Job, Tracking};
 use condyle::{Model, open};
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -21,9 +24,8 @@ pub(crate) struct Track {
     /// One or several marker recordings.
     #[arg(required = true)]
     trials: Vec<PathBuf>,
-    /// Weights, coordinate tasks and time range: a setup of OpenSim's inverse kinematics.
-    #[arg(long, value_name = "IK.xml")]
-    setup: Option<PathBuf>,
+    #[command(flatten)]
+    asked: request::Asked,
     /// The motion: .mot, .sto, .csv or .glb, `-`, or a folder (required with several recordings).
     #[arg(short, long)]
     output: Option<PathBuf>,
@@ -39,12 +41,6 @@ pub(crate) struct Track {
     /// Number of solver threads; all cores by default.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Hold coordinates to their enforced ranges.
-    #[arg(long, value_enum, default_value_t = Limits::On)]
-    limits: Limits,
-    /// Put swapped labels right, and leave markers out where they cannot be.
-    #[arg(long)]
-    robust: bool,
     /// The report as one JSON document on standard output.
     #[arg(long)]
     json: bool,
@@ -53,7 +49,8 @@ pub(crate) struct Track {
 impl Track {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
         let model = Arc::new(warned(&self.model, open::model(&self.model)?));
-        let request = self.request()?;
+        let mut request = self.asked.request(&model)?;
+        request.threads = self.threads.map(usize::from);
         let several = self.trials.len() > 1;
         if several && self.output.as_ref().is_some_and(|o| o != Path::new("-") && !is_folder(o)) {
             return Err(Failure::new("several recordings need a folder for -o"));
@@ -75,16 +72,16 @@ impl Track {
             bar.finish_and_clear();
             warn_about(trial, &tracking.warnings);
             let report = tracking.report(&model);
-            failed |= !report.summary.failed.is_empty();
+            failed |= !report.summary.failed.is_empty() || !report.verdict.plausible;
             self.write_motion(&model, trial, &recording, &tracking)?;
             if let Some(path) = &self.errors {
                 let path = self.for_trial(path, trial, "csv");
                 output::write(&path, error_table(&tracking).as_bytes())?;
             }
             if !self.json && self.output.as_deref() != Some(Path::new("-")) {
-                print_summary(trial, &recording, &report, seconds)?;
+                report::print(trial, &recording, &report, seconds)?;
             }
-            reports.push(json(trial, &report, seconds));
+            reports.push(report::json(trial, &report, seconds));
         }
         let whole = if several { Value::Array(reports) } else { reports.remove(0) };
         if let Some(path) = &self.report {
@@ -95,24 +92,6 @@ impl Track {
             output::print_json(&whole)?;
         }
         Ok(if failed { Outcome::DoesNotHold } else { Outcome::Done })
-    }
-
-    fn request(&self) -> Result<Request, Failure> {
-        let mut request = Request::default();
-        if let Some(path) = &self.setup {
-            let setup = warned(path, open::setup(path)?);
-            request = Request::from_setup(&setup);
-            if let Some(name) = &setup.coordinate_file
-                && request.wants_values()
-            {
-                let path = open::beside(path, name);
-                request.coordinate_values = Some(warned(&path, open::table(&path)?));
-            }
-        }
-        request.limits = self.limits == Limits::On;
-        request.robust = self.robust;
-        request.threads = self.threads.map(usize::from);
-        Ok(request)
     }
 
     /// A path for one of several recordings: a file of the trial's name in the folder.
@@ -154,86 +133,4 @@ fn error_table(tracking: &Tracking) -> String {
         seen.filter(|(_, e)| e.is_finite()).map(move |(name, &e)| (time, name.as_str(), e))
     });
     csv::write_marker_errors(rows)
-}
-
-fn json(trial: &Path, report: &Report, seconds: f64) -> Value {
-    let s = &report.summary;
-    let errors = |m: &MarkerErrors| (m.name.clone(), json!({ "rms_m": m.rms, "max_m": m.max }));
-    let markers: serde_json::Map<String, Value> = report.markers.iter().map(errors).collect();
-    let failed = s
-        .failed
-        .iter()
-        .map(|f| json!({ "frame": f.frame, "time": f.time, "status": f.status.name() }));
-    let swaps = report.swaps.iter().map(
-        |swap| json!({ "labels": swap.labels, "frames": [swap.frames.start, swap.frames.end] }),
-    );
-    let faulty = |left_out: bool| -> Vec<Value> {
-        let wanted = report.faulty.iter().filter(|f| f.fault.is_left_out() == left_out);
-        let one = |f: &Faulty| {
-            let frames = [f.frames.start, f.frames.end];
-            json!({ "label": f.label, "frames": frames, "fault": f.fault.name() })
-        };
-        wanted.map(one).collect()
-    };
-    json!({
-        "trial": trial.to_string_lossy(),
-        "frames": s.frames,
-        "seconds": seconds,
-        "frames_per_second": s.frames as f64 / seconds.max(1e-9),
-        "markers_used": s.markers_used,
-        "rms_m": s.rms,
-        "max_m": s.max,
-        "objective": s.objective,
-        "objective_markers": s.objective_markers,
-        "failed_frames": failed.collect::<Vec<_>>(),
-        "loop_error_m": report.loop_error,
-        "iterations": report.iterations,
-        "mostly_at_limit": report.mostly_at_limit,
-        "swapped_labels": swaps.collect::<Vec<_>>(),
-        "left_out": faulty(true),
-        "not_resolved": faulty(false),
-        "markers": markers,
-    })
-}
-
-fn print_summary(
-    trial: &Path,
-    recording: &Recording,
-    report: &Report,
-    seconds: f64,
-) -> Result<(), Failure> {
-    let s = &report.summary;
-    let mut text = format!(
-        "{}: {} frames, {} of {} markers, {:.0} frames/s\n  marker error {:.2} mm RMS, {:.1} mm at worst\n",
-        trial.display(),
-        s.frames,
-        s.markers_used,
-        recording.labels.len(),
-        s.frames as f64 / seconds.max(1e-9),
-        1e3 * s.rms,
-        1e3 * s.max,
-    );
-    let mut worst: Vec<&MarkerErrors> = report.markers.iter().collect();
-    worst.sort_by(|a, b| b.rms.total_cmp(&a.rms));
-    let row = |m: &&MarkerErrors| {
-        let [rms, max] = [1e3 * m.rms, 1e3 * m.max];
-        vec![m.name.clone(), format!("{rms:.1} mm RMS,"), format!("{max:.1} mm at worst")]
-    };
-    let rows: Vec<Vec<String>> = worst.iter().take(3).map(row).collect();
-    text.push_str(&output::columns(&rows));
-    for swap in &report.swaps {
-        text.push_str(&format!("  {swap}\n"));
-    }
-    for faulty in &report.faulty {
-        text.push_str(&format!("  {faulty}\n"));
-    }
-    if let [first, ..] = s.failed[..] {
-        text.push_str(&format!(
-            "  {} frames not solved, the first is frame {} ({})\n",
-            s.failed.len(),
-            first.frame,
-            first.status.name()
-        ));
-    }
-    output::print(text.as_bytes())
 }

@@ -20,7 +20,9 @@ impl Folder {
 
     /// Writes a file of the folder.
     pub(crate) fn write(&self, name: &str, content: impl AsRef<[u8]>) -> &Self {
-        std::fs::write(self.0.join(name), content).expect("a file of a test");
+        let path = self.0.join(name);
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder of a test");
+        std::fs::write(path, content).expect("a file of a test");
         self
     }
 

@@ -166,3 +166,100 @@ fn several_recordings_go_to_a_folder() {
     let said = folder.condyle(&["track", "leg.osim", "a.trc", "-o", "a.xyz"]).refused();
     assert!(said.contains("a.xyz: the ending names no format for a motion"), "{said}");
 }
+
+#[test]
+fn arguments_win_over_a_written_setup_and_both_over_the_usual() {
+    let folder = Folder::with_leg("track-written-setup");
+    folder.write("walk.trc", whole(21).replace("HIP", "Pelvis1")).write(
+        "sets/names.toml",
+        "condyle = 1\nkind = \"names\"\n[names]\nPelvis1 = [\"hip centre\", \"HIP\"]\n",
+    );
+    folder.write(
+        "sets/setup.toml",
+        "condyle = 1\nkind = \"setup\"\nangles = \"deg\"\ntime = [0.05, \"none\"]\n\
+         names = \"names.toml\"\nmax_rms = 0.05\n\
+         [weight]\n\"*\" = 2\nTIBIA = 0\n\
+         [hold.hip_flexion]\nstiffness = 1e4\nrest = 30\nunit = \"deg\"\n",
+    );
+    let run = |more: &[&str]| {
+        let arguments = [
+            "track",
+            "leg.osim",
+            "walk.trc",
+            "--setup",
+            "sets/setup.toml",
+            "--json",
+            "-o",
+            "w.csv",
+        ];
+        folder.condyle(&[&arguments[..], more].concat())
+    };
+    let answer = run(&["--hold", "hip_flexion=0"]).json();
+    // From 0.05 to 0.2 s at 100 Hz; all markers but one, the renamed among them.
+    assert_eq!((&answer["frames"], &answer["markers_used"]), (&json!(16), &json!(5)));
+    assert_eq!(answer["unused_markers"], json!({ "model": ["TIBIA"], "recording": ["TIBIA"] }));
+    assert_eq!(answer["verdict"], json!({ "plausible": true, "cause": null }));
+    near(table(&folder.read("w.csv"), ',').1[0][1], leg::hip(0.05), 2e-5);
+    let arguments =
+        ["--time", "0.1:0.12", "--weight", "T*=1", "--weight", "SHIN=0", "--max-rms", "900"];
+    let held = run(&arguments).json();
+    assert_eq!((&held["frames"], &held["markers_used"]), (&json!(3), &json!(5)));
+    // So stiff that markers a few centimetres off have no say.
+    near(table(&folder.read("w.csv"), ',').1[0][1], 30f64.to_radians(), 1e-4);
+    assert!(number(&held["objective_posture"]) > 0.0);
+    // The bound of the setup holds where no argument raises it.
+    let arguments = ["--time", "0.1:0.12"];
+    assert_eq!(run(&arguments).code, 1);
+}
+
+#[test]
+fn tasks_alone_are_a_setup() {
+    let folder = Folder::with_leg("track-tasks-alone");
+    folder.write("walk.trc", whole(5)).write(
+        "tasks.xml",
+        "<IKTaskSet><objects><IKMarkerTask name=\"MID\"><weight>2</weight></IKMarkerTask>\
+         <IKMarkerTask name=\"SHIN\"><weight>1</weight></IKMarkerTask></objects></IKTaskSet>",
+    );
+    let arguments = ["track", "leg.osim", "walk.trc", "--setup", "tasks.xml", "--json"];
+    let report = folder.condyle(&arguments).json();
+    assert_eq!(report["markers_used"], 2);
+    assert_eq!(report["unused_markers"]["model"].as_array().map(Vec::len), Some(4));
+}
+
+#[test]
+fn a_fit_that_cannot_be_is_refused_with_its_cause() {
+    let folder = Folder::with_leg("track-implausible");
+    // The hip may not go below 0.2 now, but was at 0.
+    let tight = leg::osim().replace("<range>-1.5 2</range>", "<range>0.2 2</range>");
+    folder.write("tight.osim", tight).write("walk.trc", whole(3));
+    let arguments = ["track", "tight.osim", "walk.trc", "--max-rms", "1"];
+    let run = folder.condyle(&[&arguments[..], &["--json"]].concat());
+    assert_eq!(run.code, 1, "{}", run.err);
+    let report: Value = serde_json::from_slice(&run.out).expect("JSON");
+    assert_eq!(report["verdict"]["plausible"], false);
+    let cause = report["verdict"]["cause"].as_str().expect("a cause");
+    assert!(cause.contains("farthest off are"), "{cause}");
+    let text = folder.condyle(&arguments).expect(1);
+    assert!(text.contains("  not plausible: the marker error is"), "{text}");
+}
+
+#[test]
+fn wrong_arguments_are_refused_with_suggestions() {
+    let folder = Folder::with_leg("track-arguments");
+    folder.write("walk.trc", whole(3));
+    for (arguments, said) in [
+        (["--weight", "TIBLA=1"], "did you mean `TIBIA`?"),
+        (["--weight", "TIBIA"], "give NAME=NUMBER"),
+        (["--weight", "TIBIA=-1"], "0 or more"),
+        (["--weight", "TIBIA=1e308"], "out of bounds"),
+        (["--hold", "hip_flexoin=1"], "did you mean `hip_flexion`?"),
+        (["--time", "2:1"], "no time lies between"),
+        (["--time", "7:"], "no frame lies between"),
+        (["--names", "opencab"], "did you mean `opencap`?"),
+        (["--max-rms", "0"], "millimetres above 0"),
+    ] {
+        let run = folder.condyle(&[&["track", "leg.osim", "walk.trc"][..], &arguments].concat());
+        let found = run.refused();
+        assert!(found.contains(said), "{arguments:?}: {found}");
+    }
+}

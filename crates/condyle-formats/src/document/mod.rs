@@ -10,7 +10,8 @@
 //! This folder holds what all kinds share: the tree of values with their places, included texts,
 //! typed access to fields, numbers with units, functions, and messages shown beside the text. It
 //! knows nothing of any kind. [`model`] is the kind that describes models; its functions are
-//! available here, too. [`kind()`] tells the kind of a text.
+//! available here, too. [`setup`] is how recordings are tracked, [`names`] what their labels are called
+//! in models. [`kind()`] tells the kind of a text.
 //!
 //! Reading reports everything that is wrong at once, each with its line and column. Its codes are
 //! `document/...` for what all kinds share, such as a missing key or a wrong type, and `KIND/...`
@@ -25,8 +26,10 @@ mod function;
 mod head;
 mod include;
 pub mod model;
+pub mod names;
 mod number;
 mod render;
+pub mod setup;
 #[cfg(test)]
 mod tests;
 mod texts;

@@ -148,6 +148,8 @@ pub fn tasks_from_bytes(bytes: &[u8]) -> Result<Read<IkTaskSet>, Error> {
 }
 
 const TOOL: &str = "InverseKinematicsTool";
+/// Its name before OpenSim 2.4.
+const OLD_TOOL: &str = "IKTool";
 
 /// The properties of a tool; unused ones are listed so that a mistyped name can be recognised.
 const PROPERTIES: [&str; 12] = [
@@ -211,13 +213,13 @@ pub(super) fn from_document(document: Read<XmlDocument>) -> Result<Read<IkSetup>
 pub(super) fn tool_of(root: Element<'_>) -> Option<Element<'_>> {
     let candidates = || std::iter::once(root).chain(root.children());
     let misspelt = || candidates().find(|e| distance(e.name(), TOOL) <= 2);
-    candidates().find(|e| e.is(TOOL)).or_else(misspelt)
+    candidates().find(|e| e.is(TOOL) || e.is(OLD_TOOL)).or_else(misspelt)
 }
 
 /// The tool itself, bare or in its document; in OpenSim's own files its name is misspelt.
 fn tool<'d>(root: Element<'d>, warnings: &mut Warnings) -> Result<Element<'d>, Error> {
     if let Some(tool) = tool_of(root) {
-        if !tool.is(TOOL) {
+        if !tool.is(TOOL) && !tool.is(OLD_TOOL) {
             warnings.push(
                 Diagnostic::warning("setup/misspelt", format!("<{}> is not known", tool.name()))
                     .at(tool.place())
@@ -248,6 +250,9 @@ fn file(tool: Element<'_>, name: &str) -> Option<String> {
 }
 
 fn time_range(tool: Element<'_>) -> Result<Option<[f64; 2]>, Error> {
+    if tool.child_text("time_range").is_some_and(|text| assigned(text).is_none()) {
+        return Ok(None);
+    }
     let Some(range) = tool.child_numbers::<2>("time_range")? else { return Ok(None) };
     let [start, end] = range;
     if range == [f64::NEG_INFINITY, f64::INFINITY] {
@@ -473,6 +478,21 @@ mod tests {
         let error =
             super::read("<OpenSimDocument><InverseDynamicsTool/></OpenSimDocument>").unwrap_err();
         assert_eq!(error.code(), "setup/not-ik");
+    }
+
+    #[test]
+    fn the_tool_of_old_versions_and_times_without_a_value_are_read() {
+        let read = read("<OpenSimDocument><IKTool name='x'/></OpenSimDocument>").unwrap();
+        assert!(!read.warned("setup/misspelt"));
+        assert_eq!(read.value.name, "x");
+        for text in ["Unassigned", "", "-Inf Inf"] {
+            let text = format!("<time_range>{text}</time_range>");
+            assert_eq!(tool(&text).unwrap().value.time_range, None, "{text}");
+        }
+        assert_eq!(
+            tool("<time_range>1 2</time_range>").unwrap().value.time_range,
+            Some([1.0, 2.0])
+        );
     }
 
     #[test]

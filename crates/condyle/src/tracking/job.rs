@@ -1,6 +1,6 @@
 //! One recording on its way through a tracker.
 
-use super::{Faulty, Request, Swap, Tracking, posture};
+use super::{Faulty, Request, Swap, Tracking, UnusedMarkers, Verdict, posture, verdict};
 use crate::matching::match_markers;
 use condyle_diagnostics::{Diagnostic, Error};
 use condyle_model::Model;
@@ -24,6 +24,7 @@ pub struct Job<'a> {
     warnings: Vec<Diagnostic>,
     threads: Option<usize>,
     robust: bool,
+    max_rms: f64,
 }
 
 impl<'a> Job<'a> {
@@ -31,22 +32,25 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     /// `track/no-common-markers` if model and recording have no marker of positive weight in common,
-    /// `track/no-frames` if no frame lies in the time range.
+    /// `track/no-frames` if no frame lies in the time range, `track/weight`, `track/posture` and
+    /// `track/unknown-marker` if the request asks for what cannot be.
     pub fn new(
         model: impl Into<Arc<Model>>,
         recording: &'a Recording,
         request: &Request,
     ) -> Result<Self, Error> {
         let model = model.into();
-        let (matches, mut warnings) = match_markers(&model, &recording.labels);
+        request.check()?;
+        let weights = request.weights_of(&model)?;
+        let mut warnings = vec![];
+        let renamed = request.renamed(&model, &recording.labels, &mut warnings);
+        let (matches, guesses) = match_markers(&model, &renamed);
+        warnings.extend(guesses);
         let mut targets = Targets::default();
         let (mut labels, mut markers) = (vec![], vec![]);
         for found in matches {
             let name = &model.markers()[found.marker].name;
-            let weight = match &request.marker_weights {
-                None => 1.0,
-                Some(weights) => weights.get(name).copied().unwrap_or(0.0),
-            };
+            let weight = weights[found.marker];
             if weight > 0.0 {
                 targets.markers.push(MarkerTarget { marker: found.marker, weight });
                 labels.push(found.label);
@@ -68,7 +72,8 @@ impl<'a> Job<'a> {
         let (threads, robust) = (request.threads, request.robust);
         let rules = Rules { limits: request.limits, ..Rules::default() };
         let tracker = Arc::new(Tracker::new(model, targets, rules));
-        Ok(Self { tracker, recording, markers, labels, frames, warnings, threads, robust })
+        let max_rms = request.max_rms;
+        Ok(Self { tracker, recording, markers, labels, frames, warnings, threads, robust, max_rms })
     }
 
     /// The tracker, which a [`Stream`](super::Stream) can share.
@@ -117,7 +122,25 @@ impl<'a> Job<'a> {
         let (markers, labels) = (self.markers.clone(), self.labels.clone());
         let (frames, mut warnings) = (self.frames.clone(), self.warnings.clone());
         warnings.extend(self.robust.then(|| few_frames(frames.len())).flatten());
-        Tracking { motion, answers, markers, labels, frames, warnings, swaps, faulty }
+        let model = self.tracker.model();
+        let unused = UnusedMarkers::of(model, &self.recording.labels, &markers, &labels);
+        let verdict = Verdict::PLAUSIBLE;
+        let mut tracking = Tracking {
+            motion,
+            answers,
+            markers,
+            labels,
+            frames,
+            warnings,
+            swaps,
+            faulty,
+            unused,
+            verdict,
+        };
+        let (verdict, odd) = verdict::judge(&self.tracker, self.recording, &tracking, self.max_rms);
+        tracking.verdict = verdict;
+        tracking.warnings.extend(odd);
+        tracking
     }
 
     /// Finds faults and tracks what they touch again.

@@ -4,10 +4,18 @@
 //! solves it in a second step. What comes out is a [`Tracking`], summed up in a [`Report`]. Frames
 //! that come one by one are solved by a [`Stream`], over a [`Tracker`] that shares its model.
 
+mod assignment;
+mod cloud;
 mod job;
 pub(crate) mod posture;
 mod report;
 mod request;
+#[cfg(any(feature = "document", feature = "opensim"))]
+mod setup;
+mod sides;
+mod unused;
+mod variant;
+mod verdict;
 
 pub use condyle_track::robust::Fault;
 pub use condyle_track::{
@@ -17,6 +25,9 @@ pub use condyle_track::{
 pub use job::Job;
 pub use report::{FailedFrame, MarkerErrors, Report, Summary};
 pub use request::{CoordinateRequest, CoordinateValue, PostureRequest, Request};
+pub use unused::{Unused, UnusedMarkers};
+pub use variant::Variant;
+pub use verdict::Verdict;
 
 use condyle_diagnostics::{Diagnostic, Error};
 use condyle_model::Model;
@@ -44,6 +55,10 @@ pub struct Tracking {
     /// Labels that were left out, or stray and could not be put right, by frame range (robust tracking
     /// only).
     pub faulty: Vec<Faulty>,
+    /// The markers and labels that were not used.
+    pub unused: UnusedMarkers,
+    /// Whether the fit can be believed.
+    pub verdict: Verdict,
 }
 
 /// Labels that are exchanged over some frames.

@@ -1,6 +1,6 @@
 //! Numbers about a whole tracking.
 
-use super::{Faulty, Swap, Tracking};
+use super::{Faulty, Swap, Tracking, UnusedMarkers, Verdict};
 use condyle_model::{CoordinateId, Model};
 use condyle_track::{FrameAnswer, FrameStatus};
 
@@ -64,6 +64,10 @@ pub struct Report {
     pub faulty: Vec<Faulty>,
     /// The markers used.
     pub markers: Vec<MarkerErrors>,
+    /// The markers and labels that were not used.
+    pub unused: UnusedMarkers,
+    /// Whether the fit can be believed.
+    pub verdict: Verdict,
 }
 
 impl Tracking {
@@ -101,6 +105,8 @@ impl Tracking {
             swaps: self.swaps.clone(),
             faulty: self.faulty.clone(),
             markers: self.marker_errors(),
+            unused: self.unused.clone(),
+            verdict: self.verdict.clone(),
         }
     }
 

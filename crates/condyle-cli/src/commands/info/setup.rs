@@ -1,6 +1,7 @@
 //! A setup of inverse kinematics: files, time range and tasks.
 
 use crate::output::columns;
+use condyle::formats::document::setup::TrackSetup;
 use condyle::formats::opensim::setup::{CoordinateTarget, IkSetup, IkTaskSet, IkTasks};
 use serde_json::{Value, json};
 
@@ -81,6 +82,28 @@ pub(super) fn to_text(setup: &IkSetup) -> String {
         IkTasks::File(name) => text.push_str(&format!("tasks in {name}\n")),
     }
     text
+}
+
+/// A setup that people write.
+pub(super) fn written_to_text(setup: &TrackSetup) -> String {
+    let pair = |name: &str, value: String| vec![name.to_owned(), value];
+    let mut rows = vec![];
+    rows.extend(setup.time.map(|[first, last]| pair("time", format!("{first} to {last} s"))));
+    rows.extend(setup.names.as_ref().map(|names| pair("names", names.clone())));
+    rows.extend(setup.limits.map(|on| pair("limits", on.to_string())));
+    rows.extend(setup.robust.map(|on| pair("robust", on.to_string())));
+    rows.extend(setup.max_rms.map(|rms| pair("max_rms", format!("{rms} m"))));
+    rows.extend(setup.loop_weight.map(|weight| pair("loop_weight", weight.to_string())));
+    rows.extend(setup.weights.iter().map(|(name, w)| pair(name, format!("weight {w}"))));
+    let sum = |coordinates: &[(String, f64)]| {
+        let terms = coordinates.iter().map(|(name, factor)| format!("{factor} {name}"));
+        terms.collect::<Vec<_>>().join(" + ")
+    };
+    let postures = setup.postures.iter();
+    rows.extend(postures.map(|p| pair(&sum(&p.coordinates), format!("stiffness {}", p.stiffness))));
+    let coordinates = setup.coordinates.iter();
+    rows.extend(coordinates.map(|c| pair(&c.name, format!("weight {}", c.weight))));
+    format!("a setup of tracking\n{}", columns(&rows))
 }
 
 fn task_lines(tasks: &IkTaskSet) -> String {

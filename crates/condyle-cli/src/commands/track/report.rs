@@ -1,0 +1,142 @@
+//! What is said of a tracking: one JSON document, or a few lines.
+
+use crate::failure::Failure;
+use crate::output;
+use condyle::formats::Recording;
+use condyle::tracking::{Faulty, MarkerErrors, Report, Unused};
+use serde_json::{Value, json};
+use std::path::Path;
+
+pub(super) fn json(trial: &Path, report: &Report, seconds: f64) -> Value {
+    let s = &report.summary;
+    let errors = |m: &MarkerErrors| (m.name.clone(), json!({ "rms_m": m.rms, "max_m": m.max }));
+    let markers: serde_json::Map<String, Value> = report.markers.iter().map(errors).collect();
+    let failed = s
+        .failed
+        .iter()
+        .map(|f| json!({ "frame": f.frame, "time": f.time, "status": f.status.name() }));
+    let swaps = report.swaps.iter().map(
+        |swap| json!({ "labels": swap.labels, "frames": [swap.frames.start, swap.frames.end] }),
+    );
+    let faulty = |left_out: bool| -> Vec<Value> {
+        let wanted = report.faulty.iter().filter(|f| f.fault.is_left_out() == left_out);
+        let one = |f: &Faulty| {
+            let frames = [f.frames.start, f.frames.end];
+            json!({ "label": f.label, "frames": frames, "fault": f.fault.name() })
+        };
+        wanted.map(one).collect()
+    };
+    json!({
+        "trial": trial.to_string_lossy(),
+        "frames": s.frames,
+        "seconds": seconds,
+        "frames_per_second": s.frames as f64 / seconds.max(1e-9),
+        "markers_used": s.markers_used,
+        "rms_m": s.rms,
+        "max_m": s.max,
+        "objective": s.objective,
+        "objective_markers": s.objective_markers,
+        "failed_frames": failed.collect::<Vec<_>>(),
+        "loop_error_m": report.loop_error,
+        "iterations": report.iterations,
+        "objective_posture": s.objective_posture,
+        "mostly_at_limit": report.mostly_at_limit,
+        "swapped_labels": swaps.collect::<Vec<_>>(),
+        "left_out": faulty(true),
+        "not_resolved": faulty(false),
+        "unused_markers": {
+            "model": names(&report.unused.model),
+            "recording": names(&report.unused.recording),
+        },
+        "verdict": {
+            "plausible": report.verdict.plausible,
+            "cause": report.verdict.cause.as_ref().map(|cause| &cause.message),
+        },
+        "markers": markers,
+    })
+}
+
+pub(super) fn print(
+    trial: &Path,
+    recording: &Recording,
+    report: &Report,
+    seconds: f64,
+) -> Result<(), Failure> {
+    let s = &report.summary;
+    let mut text = format!(
+        "{}: {} frames, {} of {} markers, {:.0} frames/s\n  marker error {:.2} mm RMS, {:.1} mm at worst\n",
+        trial.display(),
+        s.frames,
+        s.markers_used,
+        recording.labels.len(),
+        s.frames as f64 / seconds.max(1e-9),
+        1e3 * s.rms,
+        1e3 * s.max,
+    );
+    let mut worst: Vec<&MarkerErrors> = report.markers.iter().collect();
+    worst.sort_by(|a, b| b.rms.total_cmp(&a.rms));
+    let row = |m: &&MarkerErrors| {
+        let [rms, max] = [1e3 * m.rms, 1e3 * m.max];
+        vec![m.name.clone(), format!("{rms:.1} mm RMS,"), format!("{max:.1} mm at worst")]
+    };
+    let rows: Vec<Vec<String>> = worst.iter().take(3).map(row).collect();
+    text.push_str(&output::columns(&rows));
+    for swap in &report.swaps {
+        text.push_str(&format!("  {swap}
+"));
+    }
+    for faulty in &report.faulty {
+        text.push_str(&format!("  {faulty}
+"));
+    }
+    if let [first, ..] = s.failed[..] {
+        text.push_str(&format!(
+            "  {} frames not solved, the first is frame {} ({})\n",
+            s.failed.len(),
+            first.frame,
+            first.status.name()
+        ));
+    }
+    text.push_str(&unused("model", "recording", &report.unused.model));
+    text.push_str(&unused("recording", "model", &report.unused.recording));
+    if !report.mostly_at_limit.is_empty() {
+        let keys = few(report.mostly_at_limit.iter().cloned());
+        text.push_str(&format!("  mostly at a limit: {keys}\n"));
+    }
+    if let Some(cause) = &report.verdict.cause {
+        text.push_str(&format!("  not plausible: {}\n", cause.sentence()));
+    }
+    output::print(text.as_bytes())
+}
+
+fn names(unused: &[Unused]) -> Vec<&str> {
+    unused.iter().map(|one| one.name.as_str()).collect()
+}
+
+/// How many names a line holds.
+const FEW: usize = 6;
+
+/// The first of some names, and how many more there are.
+fn few(names: impl ExactSizeIterator<Item = String>) -> String {
+    let more = names.len().saturating_sub(FEW);
+    let mut list = names.take(FEW).collect::<Vec<_>>().join(", ");
+    if more > 0 {
+        list.push_str(&format!(" and {more} more"));
+    }
+    list
+}
+
+/// A line about the names of one side that were not used, those with a likely partner first.
+fn unused(side: &str, other: &str, unused: &[Unused]) -> String {
+    if unused.is_empty() {
+        return String::new();
+    }
+    let mut sorted: Vec<&Unused> = unused.iter().collect();
+    sorted.sort_by_key(|one| one.partner.is_none());
+    let said = sorted.iter().map(|one| match &one.partner {
+        Some(partner) => format!("`{}` (is it the {other}'s `{partner}`?)", one.name),
+        None => format!("`{}`", one.name),
+    });
+    let noun = if unused.len() == 1 { "marker" } else { "markers" };
+    format!("  {} {noun} of the {side} not used: {}\n", unused.len(), few(said))
+}
