@@ -3,10 +3,9 @@
 use crate::answer::{FrameAnswer, FrameStatus, better};
 use crate::problem::Frame;
 use crate::tracker::{Scratch, Tracker};
-use condyle_math::Vec3;
-use condyle_model::{CoordinateId, CoordinateKind, Mode};
+use condyle_model::{CoordinateId, CoordinateKind};
 use condyle_solve::least_squares::{self, Stop};
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::TAU;
 
 /// A frame that fits this many times worse than the one before is looked at again.
 const JUMP: f64 = 3.0;
@@ -14,6 +13,10 @@ const JUMP: f64 = 3.0;
 const JUMP_FLOOR: f64 = 1e-5;
 /// Two values of F + P closer than this (0.03 mm RMS) are alike.
 const ALIKE: f64 = 1e-9;
+/// Rotations that differ by more than this, in radians, are another branch, to which an answer changes
+/// only where that lowers F + P by this share.
+pub(crate) const TURN: f64 = 0.3;
+const SWITCH: f64 = 1e-3;
 /// How many first guesses such a frame gets.
 const RESCUE_GUESSES: usize = 2;
 
@@ -76,7 +79,42 @@ impl Tracker {
                 best = Some(answer);
             }
         }
-        best.unwrap_or_else(|| self.solve_frame(scratch, seen, frame, &self.defaults))
+        let mut best =
+            best.unwrap_or_else(|| self.solve_frame(scratch, seen, frame, &self.defaults));
+        for guess in 0..self.limbs.len() {
+            self.try_limb(scratch, seen, frame, guess, &mut best);
+        }
+        best
+    }
+
+    /// Tries a limb at other quarter turns, where its markers are farther off than all on average.
+    fn try_limb(
+        &self,
+        scratch: &mut Scratch,
+        seen: &[Option<[f64; 3]>],
+        frame: usize,
+        limb: usize,
+        best: &mut FrameAnswer,
+    ) {
+        for guess in self.limb_guesses(scratch, seen, limb, best) {
+            let mut answer = self.solve_frame(scratch, seen, frame, &guess);
+            if self.unwind(&mut answer.coordinates) {
+                self.solve_into(scratch, seen, frame, &mut answer);
+            }
+            answer.iterations += best.iterations;
+            if self.replaces(&answer, best) {
+                *best = answer;
+            } else {
+                best.iterations = answer.iterations;
+            }
+        }
+    }
+
+    /// Whether an answer takes the place of another: it is better, and where a joint turns much, by
+    /// a thousandth at least. Of answers that fit alike the one at hand stays.
+    pub(crate) fn replaces(&self, a: &FrameAnswer, b: &FrameAnswer) -> bool {
+        let alike = a.status == b.status && a.minimised() >= b.minimised() * (1.0 - SWITCH);
+        better(a, b) && !(alike && self.largest_turn(a, b) > TURN)
     }
 
     /// Whether an answer beats another where nothing came before: clearly lower F + P, or as good and
@@ -136,15 +174,36 @@ impl Tracker {
     ) {
         let before = if answer.status.is_solved() { answer.minimised() } else { f64::INFINITY };
         self.descend(scratch, seen, frame, answer);
+        self.cross_bounds(scratch, seen, frame, answer);
         let jumped = answer.minimised() > JUMP * before + JUMP_FLOOR;
         let lost = matches!(answer.status, FrameStatus::Uncertain | FrameStatus::Infeasible);
         if jumped || lost || gap {
-            let again = self.solve_first(scratch, seen, frame, RESCUE_GUESSES);
+            let mut again = self.solve_first(scratch, seen, frame, RESCUE_GUESSES);
+            self.branches.bring_near(&mut again.coordinates, &answer.coordinates, &self.stored);
             let all = answer.iterations + again.iterations;
-            if better(&again, answer) {
+            if self.replaces(&again, answer) {
                 *answer = again;
             }
             answer.iterations = all;
+        }
+    }
+
+    /// Where a joint is at a bound, tries its other three angles, if the ranges allow them.
+    fn cross_bounds(
+        &self,
+        scratch: &mut Scratch,
+        seen: &[Option<[f64; 3]>],
+        frame: usize,
+        answer: &mut FrameAnswer,
+    ) {
+        let mut across = self.branches.across_bounds(&answer.coordinates, &self.stored);
+        let Some(other) = across.next() else { return };
+        drop(across);
+        let mut start = answer.coordinates.clone();
+        other.iter().for_each(|&(place, q)| start[place] = q);
+        let again = self.solve_frame(scratch, seen, frame, &start);
+        if again.minimised() < answer.minimised() * (1.0 - SWITCH) && better(&again, answer) {
+            *answer = again;
         }
     }
 
@@ -180,7 +239,7 @@ impl Tracker {
     }
 
     /// Puts locked coordinates at their defaults and the others within their bounds.
-    fn hold(&self, stored: &mut [f64]) {
+    pub(crate) fn hold(&self, stored: &mut [f64]) {
         for id in self.model.coordinate_ids() {
             let coordinate = self.model.coordinate(id);
             if coordinate.locked {
@@ -191,82 +250,5 @@ impl Tracker {
         for &(place, lower, upper) in self.stored.iter().flatten() {
             stored[place] = stored[place].max(lower).min(upper);
         }
-    }
-
-    /// Rough first guesses for a frame about which nothing is known, the most promising first.
-    ///
-    /// The coordinates that turn the whole model are tried at every combination of quarter turns
-    /// that their ranges allow; each is judged by the markers' distances after both clouds are
-    /// moved to their centroids. The defaults are always among the guesses.
-    fn first_guesses(
-        &self,
-        scratch: &mut Scratch,
-        seen: &[Option<[f64; 3]>],
-        most: usize,
-    ) -> Vec<Vec<f64>> {
-        let mut guesses = vec![(f64::INFINITY, self.defaults.clone())];
-        let turns = 4usize.pow(self.root_rotations.len() as u32);
-        for combination in 0..turns {
-            let mut stored = self.defaults.clone();
-            let mut digits = combination;
-            let mut legal = true;
-            for &id in &self.root_rotations {
-                let quarter = (digits % 4) as f64;
-                digits /= 4;
-                let place = self.model.stored_range(id);
-                if self.model.coordinate(id).kind == CoordinateKind::Orientation {
-                    // One orientation has all turns: about each axis by the three digits.
-                    let up = [Vec3::X, Vec3::Y, Vec3::Z][combination / 4 % 3];
-                    let turn = condyle_math::Quat::from_axis_angle(up, quarter * FRAC_PI_2);
-                    stored[place].copy_from_slice(&turn.to_array());
-                    continue;
-                }
-                let value = (quarter - if quarter == 3.0 { 4.0 } else { 0.0 }) * FRAC_PI_2;
-                stored[place.start] += value;
-                let range = self.model.coordinate(id).range;
-                legal &= !self.rules.limits
-                    || value == 0.0
-                    || range.distance(stored[place.start]) >= 0.0;
-            }
-            if legal && let Some(spread) = self.spread(scratch, seen, &mut stored) {
-                guesses.push((spread, stored));
-            }
-        }
-        guesses.sort_by(|a, b| a.0.total_cmp(&b.0));
-        guesses.dedup_by(|a, b| a.1 == b.1);
-        guesses.truncate(most.max(1));
-        guesses.into_iter().map(|(_, stored)| stored).collect()
-    }
-
-    /// Squared distance between the model's and the recorded markers, each about their centroid.
-    fn spread(
-        &self,
-        scratch: &mut Scratch,
-        seen: &[Option<[f64; 3]>],
-        stored: &mut [f64],
-    ) -> Option<f64> {
-        self.hold(stored);
-        let pose = &mut scratch.buffers.pose;
-        self.program.evaluate(stored, Mode::Open, pose).ok()?;
-        let seen = || {
-            let markers = self.markers.placed.iter().zip(seen);
-            markers.filter_map(|(marker, seen)| {
-                Some((marker.weight, marker.at(pose) - Vec3::from((*seen)?)))
-            })
-        };
-        let (mut total, mut between) = (0.0, Vec3::ZERO);
-        for (weight, off) in seen() {
-            between += off * weight;
-            total += weight;
-        }
-        if total <= 0.0 {
-            return None;
-        }
-        let between = between * (1.0 / total);
-        let mut sum = 0.0;
-        for (weight, off) in seen() {
-            sum += weight * (off - between).norm_squared();
-        }
-        Some(sum)
     }
 }

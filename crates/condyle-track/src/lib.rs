@@ -47,7 +47,9 @@
 //! Nothing here reads a file, starts a thread, or depends on how many there are.
 
 mod answer;
+mod branch;
 mod frame;
+mod guess;
 mod problem;
 mod recorded;
 pub mod robust;

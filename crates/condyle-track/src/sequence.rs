@@ -7,7 +7,8 @@
 //! 3. where a chunk's last frame disagrees with the next chunk's first, the better of the two
 //!    postures wins and the other chunk is solved again from the seam ([`stitch`]).
 
-use crate::answer::{FrameAnswer, better};
+use crate::answer::FrameAnswer;
+use crate::frame::TURN;
 use crate::recorded::Recorded;
 use crate::tracker::{Scratch, Tracker};
 use std::ops::Range;
@@ -21,9 +22,6 @@ pub struct Chunk {
 
 /// Frames in a chunk.
 const LENGTH: usize = 64;
-
-/// A rotation that changes by more than this from one frame to the next, in radians, is looked at.
-const JUMP: f64 = 0.3;
 
 /// How many first guesses the first frame gets.
 pub(crate) const FIRST_GUESSES: usize = 4;
@@ -50,7 +48,12 @@ pub fn keys(
         recorded.positions(frame, &mut seen);
         let key = match keys.last() {
             None => tracker.solve_first(scratch, &seen, frame, FIRST_GUESSES),
-            Some(before) => tracker.solve_frame(scratch, &seen, frame, &before.coordinates),
+            Some(before) => {
+                let mut answer = before.clone();
+                scratch.solver.forget();
+                tracker.follow(scratch, &seen, frame, &mut answer, false);
+                answer
+            }
         };
         keys.push(key);
     }
@@ -108,7 +111,7 @@ fn mend_jumps(
     answers: &mut [FrameAnswer],
 ) {
     for position in 1..answers.len() {
-        if tracker.largest_turn(&answers[position - 1], &answers[position]) > JUMP {
+        if tracker.largest_turn(&answers[position - 1], &answers[position]) > TURN {
             walk_back(tracker, scratch, recorded, first, &mut answers[..=position]);
         }
     }
@@ -127,7 +130,9 @@ fn walk_back(
         let after = answers[position + 1].clone();
         let again = run(tracker, scratch, recorded, frame..frame + 1, &after);
         match again.into_iter().next() {
-            Some(again) if better(&again, &answers[position]) => answers[position] = again,
+            Some(again) if tracker.replaces(&again, &answers[position]) => {
+                answers[position] = again;
+            }
             _ => break,
         }
     }
@@ -144,7 +149,9 @@ pub fn stitch(
     // Forwards: a chunk that began worse than the one before it ended starts again from there.
     for i in 1..chunks.len() {
         let Some(seam) = answers[i - 1].get(chunks[i - 1].frames.len()).cloned() else { continue };
-        if better(&seam, &answers[i][0]) {
+        let mut begun = answers[i][0].clone();
+        tracker.branches.bring_near(&mut begun.coordinates, &seam.coordinates, &tracker.stored);
+        if tracker.replaces(&seam, &begun) {
             let total = chunks.last().map_or(0, |c| c.frames.end);
             answers[i] = solve_chunk(tracker, scratch, recorded, &chunks[i], &seam, total);
         }
@@ -154,17 +161,76 @@ pub fn stitch(
     for i in (1..chunks.len()).rev() {
         let length = chunks[i - 1].frames.len();
         let Some(seam) = answers[i - 1].get(length) else { continue };
-        let from = answers[i][0].clone();
-        if !better(&from, seam) {
+        let mut from = answers[i][0].clone();
+        tracker.branches.bring_near(&mut from.coordinates, &seam.coordinates, &tracker.stored);
+        if !tracker.replaces(&from, seam) {
             continue;
         }
         answers[i - 1][length] = from;
         walk_back(tracker, scratch, recorded, chunks[i - 1].frames.start, &mut answers[i - 1]);
     }
     let lengths: Vec<usize> = chunks.iter().map(|c| c.frames.len()).collect();
+    let frames = answers.into_iter().zip(lengths);
+    let mut answers: Vec<FrameAnswer> =
+        frames.flat_map(|(answers, length)| answers.into_iter().take(length)).collect();
+    review(tracker, scratch, recorded, &mut answers);
+    // Of all numbers for a posture those that go on from the frame before.
+    for frame in 1..answers.len() {
+        let (before, rest) = answers.split_at_mut(frame);
+        let before = &before[frame - 1].coordinates;
+        tracker.branches.bring_near(&mut rest[0].coordinates, before, &tracker.stored);
+    }
     answers
-        .into_iter()
-        .zip(lengths)
-        .flat_map(|(answers, length)| answers.into_iter().take(length))
-        .collect()
+}
+
+/// A frame is looked at again where F + P exceeds this many medians of the trial, and 1 mm².
+const HIGH: f64 = 1.5;
+/// At most one frame in so many, and so far apart.
+const REVIEWED: usize = 256;
+const APART: usize = 32;
+
+/// Tries first guesses where the fit is worst. A posture that becomes worse little by little, at a bound or
+/// in a minimum of its own, is no jump that following would notice. What is better goes on to the
+/// frames before and after for as long as it is better there.
+fn review(
+    tracker: &Tracker,
+    scratch: &mut Scratch,
+    recorded: &dyn Recorded,
+    answers: &mut [FrameAnswer],
+) {
+    let value = |answer: &FrameAnswer| answer.minimised();
+    let mut sorted: Vec<f64> = answers.iter().map(value).collect();
+    sorted.sort_by(f64::total_cmp);
+    let Some(&median) = sorted.get(sorted.len() / 2) else { return };
+    let mut order: Vec<usize> = (0..answers.len()).collect();
+    order.sort_by(|&a, &b| value(&answers[b]).total_cmp(&value(&answers[a])));
+    let mut looked: Vec<usize> = vec![];
+    let mut seen = vec![];
+    for frame in order {
+        if looked.len() > answers.len() / REVIEWED {
+            break;
+        }
+        let high = value(&answers[frame]) > HIGH * median + 1e-6;
+        if !high || looked.iter().any(|other| other.abs_diff(frame) < APART) {
+            continue;
+        }
+        looked.push(frame);
+        recorded.positions(frame, &mut seen);
+        let mut again = tracker.solve_first(scratch, &seen, frame, FIRST_GUESSES);
+        let numbers = &mut again.coordinates;
+        tracker.branches.bring_near(numbers, &answers[frame].coordinates, &tracker.stored);
+        if !tracker.replaces(&again, &answers[frame]) {
+            continue;
+        }
+        answers[frame] = again;
+        walk_back(tracker, scratch, recorded, 0, &mut answers[..=frame]);
+        for next in frame + 1..answers.len() {
+            let before = answers[next - 1].clone();
+            let again = run(tracker, scratch, recorded, next..next + 1, &before);
+            match again.into_iter().next() {
+                Some(again) if tracker.replaces(&again, &answers[next]) => answers[next] = again,
+                _ => break,
+            }
+        }
+    }
 }

@@ -1,5 +1,7 @@
 //! A model and its targets, laid out for solving frames.
 
+use crate::branch::Branches;
+use crate::guess::Limb;
 use crate::problem::Buffers;
 use crate::target::{Markers, Moments, Targets};
 use condyle_math::Vec3;
@@ -47,6 +49,8 @@ pub struct Tracker {
     pub(crate) limit_rows: usize,
     /// Coordinates that turn or orient everything: what to vary for a first guess.
     pub(crate) root_rotations: Vec<CoordinateId>,
+    pub(crate) limbs: Vec<Limb>,
+    pub(crate) branches: Branches,
 }
 
 impl Tracker {
@@ -79,6 +83,8 @@ impl Tracker {
             }
         }
         let markers = Markers::new(&targets.markers, &model, &program, &unknowns);
+        let branches = Branches::find(&model, &program, &targets, &mut stored);
+        let limbs = Limb::of(&model, &markers, &unknowns, &stored);
         // Rotations that move every group of markers.
         let turns_all = |id: &CoordinateId| {
             let kind = model.coordinate(*id).kind;
@@ -100,6 +106,8 @@ impl Tracker {
             defaults,
             limit_rows,
             root_rotations,
+            limbs,
+            branches,
         }
     }
 

@@ -27,7 +27,7 @@ pub(crate) struct Placed {
     point: Vec3,
     segment: Option<SegmentId>,
     /// Position among the groups; `None` for markers of the world, which nothing moves.
-    group: Option<usize>,
+    pub group: Option<usize>,
 }
 
 impl Placed {

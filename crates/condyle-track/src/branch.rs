@@ -1,0 +1,241 @@
+//! Other numbers for the same posture: whole turns, and the second solution of three angles.
+//!
+//! A rotation q and q + 2π are one posture unless something reads q as a length (a screw, a spline). Three
+//! angles of one joint name a rotation twice: `(q₁ + π, s - q₂, q₃ + π)` with s = π where the first and
+//! the third axis differ (Cardan), 0 where they are the same (Euler). Which coordinates are such is not
+//! read off the components but tried: at several postures all that is tracked must stay where it is.
+
+use crate::target::Targets;
+use condyle_model::evaluate::ClosureRows;
+use condyle_model::{CoordinateKind, Mode, Model, Pose, Program};
+use std::f64::consts::{PI, TAU};
+
+/// A range that spans this much, 359°, has no ends where whole turns are the same posture.
+const CIRCLE: f64 = 359.0 * PI / 180.0;
+
+/// At how many postures is tried.
+const TRIES: usize = 6;
+
+/// Two numbers for one posture may differ by rounding.
+const SAME: f64 = 1e-9;
+
+/// Three rotations of a joint that name each posture twice.
+#[derive(Clone, Debug, PartialEq)]
+struct Twin {
+    /// Where they are stored: the first, the middle and the third.
+    places: [usize; 3],
+    /// q₂ of the other is `sum` - q₂.
+    sum: f64,
+}
+
+/// Which coordinates have other numbers for the same posture.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Branches {
+    /// Where the rotations are stored of which whole turns are the same posture.
+    circles: Vec<usize>,
+    twins: Vec<Twin>,
+}
+
+/// Where a coordinate of one number is stored, and its bounds.
+pub(crate) type Bounded = (usize, f64, f64);
+
+impl Branches {
+    /// Tries the rotations among the unknowns; a range that is a circle loses its ends.
+    pub(crate) fn find(
+        model: &Model,
+        program: &Program,
+        targets: &Targets,
+        stored: &mut [Option<Bounded>],
+    ) -> Self {
+        // A value that a coordinate should have, or rest at, tells its other numbers apart.
+        let wanted = targets.coordinates.iter().map(|t| t.coordinate);
+        let resting = targets.postures.iter().flat_map(|t| t.terms.iter().map(|(id, _)| *id));
+        let told_apart: Vec<_> = wanted.chain(resting).collect();
+        let mut same = Comparison::new(model, program, targets);
+        let (mut branches, mut triple) = (Self::default(), vec![]);
+        for id in model.coordinate_ids() {
+            let place = model.stored_range(id).start;
+            let unknown = stored.iter_mut().flatten().find(|(stored, ..)| *stored == place);
+            let Some((_, lower, upper)) = unknown else { continue };
+            if model.coordinate(id).kind != CoordinateKind::Rotation {
+                continue;
+            }
+            triple.push((place, model.coordinate(id).joint_set, told_apart.contains(&id)));
+            let wide = *upper - *lower >= CIRCLE;
+            if wide && same.holds((*lower, *upper), |q| vec![(place, q[place] + TAU)]) {
+                (*lower, *upper) = (f64::NEG_INFINITY, f64::INFINITY);
+                if !told_apart.contains(&id) {
+                    branches.circles.push(place);
+                }
+            }
+        }
+        for three in triple.windows(3) {
+            let [a, b, c] = [three[0], three[1], three[2]];
+            if a.1 != b.1 || b.1 != c.1 || a.2 || b.2 || c.2 {
+                continue;
+            }
+            let [a, b, c] = [a.0, b.0, c.0];
+            let orders = [[a, b, c], [b, a, c], [a, c, b]];
+            let found = orders.iter().flat_map(|&places| [PI, 0.0].map(|sum| Twin { places, sum }));
+            let holds = |twin: &Twin, same: &mut Comparison<'_>| {
+                same.holds((f64::NEG_INFINITY, f64::INFINITY), |q| twin.of(q).to_vec())
+            };
+            branches.twins.extend(found.into_iter().find(|twin| holds(twin, &mut same)));
+        }
+        branches
+    }
+
+    /// Of all numbers for a posture those nearest to `to` that are within the bounds; whether they
+    /// are others than before.
+    pub(crate) fn bring_near(
+        &self,
+        stored: &mut [f64],
+        to: &[f64],
+        bounds: &[Option<Bounded>],
+    ) -> bool {
+        let mut changed = false;
+        for &place in &self.circles {
+            let turns = ((stored[place] - to[place]) / TAU).round();
+            if turns != 0.0 {
+                stored[place] -= turns * TAU;
+                changed = true;
+            }
+        }
+        for twin in &self.twins {
+            let other = self.turned_near(twin.of(stored), to);
+            let away = |values: [(usize, f64); 3]| -> f64 {
+                values.iter().map(|&(place, q)| (q - to[place]).powi(2)).sum()
+            };
+            let own = twin.places.map(|place| (place, stored[place]));
+            if away(other) < away(own) - SAME && legal(&other, bounds) {
+                other.iter().for_each(|&(place, q)| stored[place] = q);
+                changed = true;
+            }
+        }
+        changed
+    }
+
+    /// The numbers of a posture with one joint at its other three angles, for each joint of which an
+    /// angle is at a bound and the others are legal.
+    pub(crate) fn across_bounds<'a>(
+        &'a self,
+        stored: &'a [f64],
+        bounds: &'a [Option<Bounded>],
+    ) -> impl Iterator<Item = [(usize, f64); 3]> + 'a {
+        let at_bound = move |place: &usize| {
+            let bound = bounds.iter().flatten().find(|(p, ..)| p == place);
+            bound.is_some_and(|&(p, lower, upper)| stored[p] <= lower || stored[p] >= upper)
+        };
+        let twins = self.twins.iter().filter(move |twin| twin.places.iter().any(at_bound));
+        twins.filter_map(move |twin| {
+            // By whole turns into the bounds.
+            let fitted = twin.of(stored).map(|(place, q)| {
+                let bound = bounds.iter().flatten().find(|(p, ..)| *p == place);
+                let turns = [0.0, -TAU, TAU].map(|turn| q + turn);
+                let inside = |q: &f64| bound.is_none_or(|&(_, l, u)| (l..=u).contains(q));
+                (place, turns.into_iter().find(inside).unwrap_or(q))
+            });
+            legal(&fitted, bounds).then_some(fitted)
+        })
+    }
+
+    fn turned_near(&self, values: [(usize, f64); 3], to: &[f64]) -> [(usize, f64); 3] {
+        values.map(|(place, q)| {
+            let turns = ((q - to[place]) / TAU).round() * TAU;
+            (place, if self.circles.contains(&place) { q - turns } else { q })
+        })
+    }
+}
+
+impl Twin {
+    /// The other three angles.
+    fn of(&self, stored: &[f64]) -> [(usize, f64); 3] {
+        let [a, b, c] = self.places;
+        [(a, stored[a] + PI), (b, self.sum - stored[b]), (c, stored[c] + PI)]
+    }
+}
+
+fn legal(values: &[(usize, f64)], bounds: &[Option<Bounded>]) -> bool {
+    values.iter().all(|&(place, q)| {
+        let bound = bounds.iter().flatten().find(|(p, ..)| *p == place);
+        bound.is_none_or(|&(_, lower, upper)| (lower..=upper).contains(&q))
+    })
+}
+
+/// Compares what is tracked at two lists of numbers.
+struct Comparison<'a> {
+    model: &'a Model,
+    program: &'a Program,
+    targets: &'a Targets,
+    poses: [Pose; 2],
+    closures: [ClosureRows; 2],
+    dice: u64,
+}
+
+impl<'a> Comparison<'a> {
+    fn new(model: &'a Model, program: &'a Program, targets: &'a Targets) -> Self {
+        let poses = [Pose::new(program), Pose::new(program)];
+        let closures = [ClosureRows::new(model), ClosureRows::new(model)];
+        Self { model, program, targets, poses, closures, dice: 1 }
+    }
+
+    /// A number from 0 to 1: SplitMix64 (Steele, Lea & Flood 2014).
+    fn random(&mut self) -> f64 {
+        self.dice = self.dice.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.dice;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Whether numbers changed like this are the same posture, wherever it is tried: rotations anywhere
+    /// within half a turn, those that change anywhere within the range given.
+    fn holds(
+        &mut self,
+        range: (f64, f64),
+        changed: impl Fn(&[f64]) -> Vec<(usize, f64)>,
+    ) -> bool {
+        let (lower, upper) = (range.0.max(-PI), range.1.min(PI));
+        (0..TRIES).all(|_| {
+            let mut at = self.model.defaults();
+            for id in self.model.coordinate_ids() {
+                if self.model.coordinate(id).kind == CoordinateKind::Rotation {
+                    at[self.model.stored_range(id).start] += PI * (2.0 * self.random() - 1.0);
+                }
+            }
+            for (place, _) in changed(&at) {
+                at[place] = lower + (upper - lower) * self.random();
+            }
+            let changes = changed(&at);
+            let mut other = at.clone();
+            changes.iter().for_each(|&(place, q)| other[place] = q);
+            self.same(&at, &other, &changes)
+        })
+    }
+
+    fn same(&mut self, a: &[f64], b: &[f64], changes: &[(usize, f64)]) -> bool {
+        let Self { model, program, targets, poses, closures, .. } = self;
+        for ((stored, pose), closures) in [a, b].iter().zip(&mut *poses).zip(&mut *closures) {
+            if program.evaluate(stored, Mode::Open, pose).is_err() {
+                return false;
+            }
+            closures.update(model, program, pose, None);
+        }
+        let [p, q] = &*poses;
+        let close = |x: f64, y: f64| (x - y).abs() <= SAME;
+        let mut markers = targets.markers.iter().filter(|t| t.weight > 0.0);
+        let segments = targets.orientations.iter().map(|t| t.segment);
+        markers.all(|target| {
+            let marker = &model.markers()[target.marker];
+            let [p, q] = [p, q].map(|pose| pose.frame(marker.segment) * marker.point);
+            (p - q).norm() <= SAME
+        }) && segments.into_iter().all(|segment| {
+            let [p, q] = [p, q].map(|pose| pose.segment(segment).linear);
+            [(p.x - q.x), (p.y - q.y), (p.z - q.z)].iter().all(|off| off.norm() <= SAME)
+        }) && (0..program.limit_row_len()).all(|row| close(p.limit_row(row), q.limit_row(row)))
+            && closures[0].residuals.iter().zip(&closures[1].residuals).all(|(x, y)| close(*x, *y))
+            && p.effective().iter().zip(q.effective()).enumerate().all(|(place, (x, y))| {
+                close(*x, *y) || changes.iter().any(|(changed, _)| *changed == place)
+            })
+    }
+}
