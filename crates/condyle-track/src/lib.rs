@@ -57,6 +57,7 @@ pub mod sequence;
 mod stream;
 mod target;
 mod tracker;
+mod trust;
 
 pub use answer::{FrameAnswer, FrameStatus};
 pub use recorded::Recorded;
@@ -66,3 +67,4 @@ pub use target::{
     CoordinateTarget, MarkerTarget, OrientationTarget, PRIOR, PostureTarget, Targets, Wanted,
 };
 pub use tracker::{Rules, Scratch, Tracker};
+pub use trust::Trust;

@@ -3,7 +3,7 @@
 use crate::branch::Branches;
 use crate::guess::Limb;
 use crate::problem::Buffers;
-use crate::target::{Markers, Moments, Targets};
+use crate::target::{Markers, Moments, PostureTarget, Targets};
 use condyle_math::Vec3;
 use condyle_model::evaluate::ClosureRows;
 use condyle_model::{CoordinateId, CoordinateKind, Jacobian, Model, Pose, Program};
@@ -56,19 +56,33 @@ pub struct Tracker {
 impl Tracker {
     /// Prepares a model for its targets.
     ///
-    /// Locked coordinates stay at their defaults, coupled ones follow their leaders; all others
-    /// are solved for. Weights that are not positive and finite are left out.
+    /// Locked coordinates stay at their defaults, coupled ones follow their leaders, and those that move
+    /// nothing that is tracked are at rest; all others are solved for. Weights that are not positive and finite are left out.
     pub fn new(model: impl Into<Arc<Model>>, mut targets: Targets, rules: Rules) -> Self {
         let model = model.into();
         targets.clean(&model);
         let program = Program::compile(&model);
         let limit_rows = if rules.limits { program.limit_row_len() } else { 0 };
-        let defaults = model.defaults();
+        let mut defaults = model.defaults();
+        let moved = targets.directions(&model, &program, limit_rows);
         let mut unknowns = vec![FIXED; model.tangent_len()];
         let (mut directions, mut stored) = (vec![], vec![]);
         for id in model.coordinate_ids() {
             let coordinate = model.coordinate(id);
             if coordinate.locked || coordinate.follows.is_some() {
+                continue;
+            }
+            if !model.tangent_range(id).any(|direction| moved[direction]) {
+                // Nothing but its own rest has a say.
+                let place = model.stored_range(id).start;
+                let rest = targets.postures.iter().rev().find(|t| t.terms.iter().any(|p| p.0 == id));
+                if let Some(PostureTarget { terms, rest, .. }) = rest
+                    && let [(_, factor)] = terms[..]
+                    && factor != 0.0
+                {
+                    let (lower, upper) = coordinate.range.bounds();
+                    defaults[place] = (rest / factor).max(lower).min(upper);
+                }
                 continue;
             }
             for direction in model.tangent_range(id) {
@@ -124,6 +138,15 @@ impl Tracker {
     /// What is tracked; what cannot be is left out, markers with weight 0.
     pub fn targets(&self) -> &Targets {
         &self.targets
+    }
+
+    /// The coordinates, neither locked nor coupled, that move nothing that is tracked.
+    pub fn unmoved(&self) -> impl Iterator<Item = CoordinateId> + '_ {
+        self.model.coordinate_ids().filter(|&id| {
+            let coordinate = self.model.coordinate(id);
+            let solved = self.model.tangent_range(id).any(|d| self.unknowns[d] != FIXED);
+            !solved && !coordinate.locked && coordinate.follows.is_none()
+        })
     }
 
     /// How many numbers are solved for.

@@ -42,7 +42,7 @@ pub use prior::PRIOR;
 
 use crate::problem::Frame;
 use crate::tracker::Tracker;
-use condyle_model::{CoordinateId, CoordinateKind, Model};
+use condyle_model::{CoordinateId, CoordinateKind, Model, Program};
 use condyle_solve::least_squares::LocalModel;
 
 /// All that is tracked.
@@ -136,6 +136,16 @@ pub(crate) fn linearise(frame: &mut Frame<'_>, local: &mut LocalModel) {
     }
 }
 
+/// Adds gradient and Hessian of what was measured (markers, wanted values, loops), or of what was assumed
+/// (postures and the prior).
+pub(crate) fn linearise_part(frame: &mut Frame<'_>, local: &mut LocalModel, assumed: bool) {
+    for (part, kind) in kinds(frame.tracker) {
+        if assumed == matches!(part, Part::Posture | Part::Unreported) {
+            kind.linearise(frame, local);
+        }
+    }
+}
+
 impl Targets {
     /// Leaves out what cannot be tracked: weights that are not positive and finite, and quaternions
     /// where one number is asked for. Markers keep their places, with weight 0.
@@ -159,6 +169,33 @@ impl Targets {
     /// itself, and leaves a frame without markers as it was.
     pub(crate) fn stand_without_markers(&self) -> bool {
         !(self.coordinates.is_empty() && self.orientations.is_empty())
+    }
+
+    /// For each direction whether something is tracked that it moves. The rest of a single coordinate does
+    /// not count; loops may tie anything to anything.
+    pub(crate) fn directions(
+        &self,
+        model: &Model,
+        program: &Program,
+        limit_rows: usize,
+    ) -> Vec<bool> {
+        let mut moved = vec![!model.closures().is_empty(); model.tangent_len()];
+        let markers = self.markers.iter().filter(|t| t.weight > 0.0);
+        let segments = markers.filter_map(|t| model.markers()[t.marker].segment);
+        for segment in segments.chain(self.orientations.iter().map(|t| t.segment)) {
+            program.segment_directions(segment).iter().for_each(|&(d, _)| moved[d as usize] = true);
+        }
+        let sums = self.postures.iter().filter(|t| t.terms.len() > 1);
+        let summed = sums.flat_map(|t| t.terms.iter().map(|(id, _)| *id));
+        for id in summed.chain(self.coordinates.iter().map(|t| t.coordinate)) {
+            let directions = program.coordinate_directions(model, id).iter();
+            directions.for_each(|&(d, _)| moved[d as usize] = true);
+        }
+        for row in 0..limit_rows {
+            let directions = program.limit_row_directions(row).iter();
+            directions.for_each(|&(d, _)| moved[d as usize] = true);
+        }
+        moved
     }
 
     /// Whether a segment should have an orientation in a frame.

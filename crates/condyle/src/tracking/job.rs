@@ -3,15 +3,19 @@
 use super::{Faulty, Request, Swap, Tracking, UnusedMarkers, Verdict, posture, verdict};
 use crate::matching::match_markers;
 use condyle_diagnostics::{Diagnostic, Error};
-use condyle_model::Model;
+use condyle_math::Mat3;
+use condyle_model::{Mode, Model, Pose};
 use condyle_motion::{Motion, Recording};
 use condyle_track::robust::{self, Corrected, Repairs};
 use condyle_track::{
-    FrameAnswer, MarkerTarget, Recorded, Rules, Scratch, Targets, Tracker, sequence,
+    FrameAnswer, MarkerTarget, Recorded, Rules, Scratch, Targets, Tracker, Trust, sequence,
 };
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::{Arc, Mutex};
+
+/// A segment that turns by more than this from one frame to the next has jumped: 60°.
+const JUMP: f64 = std::f64::consts::FRAC_PI_3;
 
 /// A recording whose markers are matched to a model, ready to be solved.
 #[derive(Clone, Debug)]
@@ -100,8 +104,12 @@ impl<'a> Job<'a> {
         let mut answers =
             self.pass(&Corrected { recorded: &recorded, repairs: &repairs }, &mut progress);
         let (mut swaps, mut faulty) = (vec![], vec![]);
+        let repairs = if self.robust {
+            self.repaired(&recorded, repairs, &mut answers, &mut progress)
+        } else {
+            repairs
+        };
         if self.robust {
-            let repairs = self.repaired(&recorded, repairs, &mut answers, &mut progress);
             let (exchanged, found) = robust::describe(&recorded, &repairs, self.frames.len());
             let name = |marker: usize| self.recording.labels[self.labels[marker]].clone();
             let frames = |range: Range<usize>| first + range.start..first + range.end;
@@ -115,6 +123,8 @@ impl<'a> Job<'a> {
                 fault: f.fault,
             }));
         }
+        let trust = self.trust(&Corrected { recorded: &recorded, repairs: &repairs }, &answers);
+        let jumps = self.jumps(&answers).map(|frame| first + frame).collect();
         let motion = Motion {
             times: self.recording.times[self.frames.clone()].to_vec(),
             frames: answers.iter().map(|a| a.coordinates.clone()).collect(),
@@ -135,6 +145,9 @@ impl<'a> Job<'a> {
             swaps,
             faulty,
             unused,
+            trust,
+            unmoved: self.tracker.unmoved().collect(),
+            jumps,
             verdict,
         };
         let (verdict, odd) = verdict::judge(&self.tracker, self.recording, &tracking, self.max_rms);
@@ -158,6 +171,50 @@ impl<'a> Job<'a> {
         }
         robust::find(tracker, &mut scratch, recorded, &mut repairs, answers);
         repairs
+    }
+
+    /// How far each coordinate of each answer can be trusted.
+    fn trust(&self, recorded: &dyn Recorded, answers: &[FrameAnswer]) -> Vec<Vec<Trust>> {
+        let chunks = sequence::cut(answers.len());
+        let tracker = &*self.tracker;
+        let judge = |index: usize, scratch: &mut Scratch| -> Vec<Vec<Trust>> {
+            let mut seen = vec![];
+            let frames = chunks[index].frames.clone();
+            let trust = frames.map(|frame| {
+                recorded.positions(frame, &mut seen);
+                tracker.trust(scratch, &seen, frame, &answers[frame])
+            });
+            trust.collect()
+        };
+        in_parallel(self.threads, chunks.len(), || Scratch::new(tracker), judge).concat()
+    }
+
+    /// The frames in which a segment with markers has turned by more than [`JUMP`] since the one before.
+    fn jumps(&self, answers: &[FrameAnswer]) -> impl Iterator<Item = usize> {
+        let (model, program) = (self.tracker.model(), self.tracker.program());
+        let targets = self.tracker.targets().markers.iter();
+        let mut segments: Vec<_> =
+            targets.filter_map(|t| model.markers()[t.marker].segment).collect();
+        segments.sort_unstable_by_key(|segment| segment.index());
+        segments.dedup();
+        let mut pose = Pose::new(program);
+        let mut before: Vec<Mat3> = vec![];
+        let mut jumps = vec![];
+        for (frame, answer) in answers.iter().enumerate() {
+            if program.evaluate(&answer.coordinates, Mode::Open, &mut pose).is_err() {
+                continue;
+            }
+            let now: Vec<Mat3> = segments.iter().map(|&s| pose.segment(s).linear).collect();
+            // The trace of a rotation is 1 + 2 cos of its angle.
+            let turned = |(a, b): (&Mat3, &Mat3)| {
+                a.x.dot(b.x) + a.y.dot(b.y) + a.z.dot(b.z) < 1.0 + 2.0 * JUMP.cos()
+            };
+            if before.iter().zip(&now).any(turned) {
+                jumps.push(frame);
+            }
+            before = now;
+        }
+        jumps.into_iter()
     }
 
     fn pass(

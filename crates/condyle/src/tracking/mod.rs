@@ -20,17 +20,17 @@ mod verdict;
 pub use condyle_track::robust::Fault;
 pub use condyle_track::{
     CoordinateTarget, FrameAnswer, FrameStatus, MarkerTarget, OrientationTarget, PostureTarget,
-    Rules, Scratch, Stream, Targets, Tracker, Wanted,
+    Rules, Scratch, Stream, Targets, Tracker, Trust, Wanted,
 };
 pub use job::Job;
-pub use report::{FailedFrame, MarkerErrors, Report, Summary};
+pub use report::{Determination, FailedFrame, MarkerErrors, Report, Summary};
 pub use request::{CoordinateRequest, CoordinateValue, PostureRequest, Request};
 pub use unused::{Unused, UnusedMarkers};
 pub use variant::Variant;
 pub use verdict::Verdict;
 
 use condyle_diagnostics::{Diagnostic, Error};
-use condyle_model::Model;
+use condyle_model::{CoordinateId, Model};
 use condyle_motion::{Motion, Recording};
 use std::fmt;
 use std::ops::Range;
@@ -57,6 +57,13 @@ pub struct Tracking {
     pub faulty: Vec<Faulty>,
     /// The markers and labels that were not used.
     pub unused: UnusedMarkers,
+    /// For each frame how far each coordinate can be trusted, in the order of the model's coordinates.
+    pub trust: Vec<Vec<Trust>>,
+    /// Coordinates that move no marker that was used.
+    pub unmoved: Vec<CoordinateId>,
+    /// Frames of the recording, from 0, in which a segment with markers turns by more than 60° from the
+    /// frame before.
+    pub jumps: Vec<usize>,
     /// Whether the fit can be believed.
     pub verdict: Verdict,
 }

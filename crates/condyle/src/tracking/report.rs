@@ -2,7 +2,7 @@
 
 use super::{Faulty, Swap, Tracking, UnusedMarkers, Verdict};
 use condyle_model::{CoordinateId, Model};
-use condyle_track::{FrameAnswer, FrameStatus};
+use condyle_track::{FrameAnswer, FrameStatus, Trust};
 
 /// What can be said of a tracking without its model.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +47,21 @@ pub struct MarkerErrors {
     pub max: f64,
 }
 
+/// In how many of the frames a coordinate follows from the markers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Determination {
+    /// Its key in the model.
+    pub coordinate: String,
+    /// Share of the frames in which it is determined.
+    pub determined: f64,
+    /// Share of the frames in which it is weak: its standard deviation exceeds 5° or 1 cm at 2 mm of noise.
+    pub weak: f64,
+    /// Share of the frames in which it is held at a bound, or by the posture of the model.
+    pub held: f64,
+    /// From when to when it is weak or held, in seconds.
+    pub spans: Vec<[f64; 2]>,
+}
+
 /// All numbers about a tracking.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
@@ -56,8 +71,14 @@ pub struct Report {
     pub loop_error: f64,
     /// Iterations of the solver, all frames together.
     pub iterations: u64,
-    /// Keys of the coordinates that touch a bound in more than half of the frames.
+    /// Keys of the coordinates that the markers push against a bound in more than half of the frames.
     pub mostly_at_limit: Vec<String>,
+    /// How far each coordinate that is not locked is determined, in the order of the model.
+    pub determination: Vec<Determination>,
+    /// Keys of the coordinates that move no marker that was used.
+    pub unmoved: Vec<String>,
+    /// Frames of the recording, from 0, in which a segment turns by more than 60° from the one before.
+    pub jumps: Vec<usize>,
     /// Labels that were exchanged and put right.
     pub swaps: Vec<Swap>,
     /// Labels that were left out, or stray and could not be put right.
@@ -95,18 +116,50 @@ impl Tracking {
 
     /// All numbers about the tracking with its model.
     pub fn report(&self, model: &Model) -> Report {
-        let mostly = |(_, frames): &(CoordinateId, usize)| 2 * frames > self.answers.len();
-        let mostly = self.at_limits(model).into_iter().filter(mostly);
+        let mostly = |id: &CoordinateId| {
+            let pushed = self.trust.iter().filter(|of| of[id.index()] == Trust::AtLimit);
+            2 * pushed.count() > self.answers.len()
+        };
+        let mostly = model.coordinate_ids().filter(mostly);
+        let key = |id: CoordinateId| model.coordinate_key(id);
+        let solved = model.coordinate_ids().filter(|&id| !model.coordinate(id).locked);
         Report {
             summary: self.summary(),
             loop_error: self.answers.iter().map(|a| a.closure_error).fold(0.0, f64::max),
             iterations: self.answers.iter().map(|a| u64::from(a.iterations)).sum(),
-            mostly_at_limit: mostly.map(|(id, _)| model.coordinate_key(id)).collect(),
+            mostly_at_limit: mostly.map(key).collect(),
+            determination: solved.map(|id| self.determination(model, id)).collect(),
+            unmoved: self.unmoved.iter().copied().map(key).collect(),
+            jumps: self.jumps.clone(),
             swaps: self.swaps.clone(),
             faulty: self.faulty.clone(),
             markers: self.marker_errors(),
             unused: self.unused.clone(),
             verdict: self.verdict.clone(),
+        }
+    }
+
+    /// In how many of the frames a coordinate follows from the markers.
+    fn determination(&self, model: &Model, id: CoordinateId) -> Determination {
+        let trust = || self.trust.iter().map(|of| of[id.index()]);
+        let n = self.trust.len().max(1) as f64;
+        let share = |kinds: &[Trust]| trust().filter(|t| kinds.contains(t)).count() as f64 / n;
+        let (mut spans, mut open): (Vec<[f64; 2]>, bool) = (vec![], false);
+        for (trust, &time) in trust().zip(&self.motion.times) {
+            let unsure = trust != Trust::Determined;
+            match spans.last_mut() {
+                Some(span) if unsure && open => span[1] = time,
+                _ if unsure => spans.push([time; 2]),
+                _ => {}
+            }
+            open = unsure;
+        }
+        Determination {
+            coordinate: model.coordinate_key(id),
+            determined: share(&[Trust::Determined]),
+            weak: share(&[Trust::Weak]),
+            held: share(&[Trust::Held, Trust::AtLimit]),
+            spans,
         }
     }
 

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::output;
 use condyle::formats::Recording;
-use condyle::tracking::{Faulty, MarkerErrors, Report, Unused};
+use condyle::tracking::{Determination, Faulty, MarkerErrors, Report, Unused};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -18,6 +18,14 @@ pub(super) fn json(trial: &Path, report: &Report, seconds: f64) -> Value {
     let swaps = report.swaps.iter().map(
         |swap| json!({ "labels": swap.labels, "frames": [swap.frames.start, swap.frames.end] }),
     );
+    let determined = |d: &Determination| {
+        let shares = json!({
+            "determined": d.determined, "weak": d.weak, "held": d.held, "not_determined_s": d.spans,
+        });
+        (d.coordinate.clone(), shares)
+    };
+    let determination: serde_json::Map<String, Value> =
+        report.determination.iter().map(determined).collect();
     let faulty = |left_out: bool| -> Vec<Value> {
         let wanted = report.faulty.iter().filter(|f| f.fault.is_left_out() == left_out);
         let one = |f: &Faulty| {
@@ -41,6 +49,9 @@ pub(super) fn json(trial: &Path, report: &Report, seconds: f64) -> Value {
         "iterations": report.iterations,
         "objective_posture": s.objective_posture,
         "mostly_at_limit": report.mostly_at_limit,
+        "determination": determination,
+        "unmoved": report.unmoved,
+        "jumps": report.jumps,
         "swapped_labels": swaps.collect::<Vec<_>>(),
         "left_out": faulty(true),
         "not_resolved": faulty(false),
@@ -102,6 +113,20 @@ pub(super) fn print(
     if !report.mostly_at_limit.is_empty() {
         let keys = few(report.mostly_at_limit.iter().cloned());
         text.push_str(&format!("  mostly at a limit: {keys}\n"));
+    }
+    let unsure = report.determination.iter();
+    let unsure = unsure.filter(|d| d.determined < 0.9 && !report.unmoved.contains(&d.coordinate));
+    let unsure: Vec<String> = unsure.map(|d| d.coordinate.clone()).collect();
+    if !unsure.is_empty() {
+        text.push_str(&format!("  hardly determined by the markers: {}\n", few(unsure.into_iter())));
+    }
+    if !report.unmoved.is_empty() {
+        let keys = few(report.unmoved.iter().cloned());
+        text.push_str(&format!("  move no marker, held at rest: {keys}\n"));
+    }
+    if let [first, ..] = report.jumps[..] {
+        let n = report.jumps.len();
+        text.push_str(&format!("  {n} jumps of more than 60 degrees, the first at frame {first}\n"));
     }
     if let Some(cause) = &report.verdict.cause {
         text.push_str(&format!("  not plausible: {}\n", cause.sentence()));
