@@ -293,7 +293,7 @@ impl Solver {
     /// (the Maratos effect).
     fn bend(&mut self, feasibility: f64) -> bool {
         let off = self.trial_equalities.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
-        if !off.is_finite() || off <= 0.1 * feasibility {
+        if !off.is_finite() || off <= 0.003 * feasibility {
             return false;
         }
         for (value, c) in self.equality_values.iter_mut().zip(&self.trial_equalities) {
