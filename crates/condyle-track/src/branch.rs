@@ -190,11 +190,7 @@ impl<'a> Comparison<'a> {
 
     /// Whether numbers changed like this are the same posture, wherever it is tried: rotations anywhere
     /// within half a turn, those that change anywhere within the range given.
-    fn holds(
-        &mut self,
-        range: (f64, f64),
-        changed: impl Fn(&[f64]) -> Vec<(usize, f64)>,
-    ) -> bool {
+    fn holds(&mut self, range: (f64, f64), changed: impl Fn(&[f64]) -> Vec<(usize, f64)>) -> bool {
         let (lower, upper) = (range.0.max(-PI), range.1.min(PI));
         (0..TRIES).all(|_| {
             let mut at = self.model.defaults();

@@ -101,7 +101,8 @@ impl Tracker {
             let mut legal = true;
             for &(place, lower, upper) in &limb.rotations {
                 let turned = stored[place] + (digits % 4) as f64 * FRAC_PI_2;
-                let inside = [turned, turned - TAU].into_iter().find(|q| (lower..=upper).contains(q));
+                let inside =
+                    [turned, turned - TAU].into_iter().find(|q| (lower..=upper).contains(q));
                 legal &= inside.is_some();
                 stored[place] = inside.unwrap_or(stored[place]);
                 digits /= 4;

@@ -75,7 +75,8 @@ impl Tracker {
             if !model.tangent_range(id).any(|direction| moved[direction]) {
                 // Nothing but its own rest has a say.
                 let place = model.stored_range(id).start;
-                let rest = targets.postures.iter().rev().find(|t| t.terms.iter().any(|p| p.0 == id));
+                let rest =
+                    targets.postures.iter().rev().find(|t| t.terms.iter().any(|p| p.0 == id));
                 if let Some(PostureTarget { terms, rest, .. }) = rest
                     && let [(_, factor)] = terms[..]
                     && factor != 0.0

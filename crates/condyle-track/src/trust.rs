@@ -77,7 +77,8 @@ impl Tracker {
         let weights = &frame.buffers.weights;
         let total = frame.buffers.total_weight;
         let squares: f64 = weights.iter().map(|w| w * w).sum();
-        let variance = if total > 0.0 { 2.0 * NOISE * NOISE * squares / (total * total) } else { 0.0 };
+        let variance =
+            if total > 0.0 { 2.0 * NOISE * NOISE * squares / (total * total) } else { 0.0 };
         let unknowns = self.trust_of_unknowns(&data, &assumed, answer, loops, variance);
         let of = |id: CoordinateId| {
             let directions = self.program.coordinate_directions(&self.model, id).iter();
@@ -134,8 +135,7 @@ impl Tracker {
                 for row in data.equality_rows.chunks_exact(n.max(1)).take(loops) {
                     measured += LOOP * largest * row[i] * row[j];
                 }
-                rest[a * m + b] =
-                    lower(&assumed.hessian, i, j) + if a == b { ridge } else { 0.0 };
+                rest[a * m + b] = lower(&assumed.hessian, i, j) + if a == b { ridge } else { 0.0 };
                 all[a * m + b] = measured + rest[a * m + b];
             }
         }

@@ -77,8 +77,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let n = whole.answers.len();
     let iterations: u32 = whole.answers.iter().map(|a| a.iterations).sum();
     let rms = 1e3 * whole.summary().rms;
-    println!("{n} frames, {:.0} frames/s, {:.2} iterations a frame, {rms:.3} mm, {} failed",
-        n as f64 / seconds, f64::from(iterations) / n as f64, whole.summary().failed.len());
+    println!(
+        "{n} frames, {:.0} frames/s, {:.2} iterations a frame, {rms:.3} mm, {} failed",
+        n as f64 / seconds,
+        f64::from(iterations) / n as f64,
+        whole.summary().failed.len()
+    );
     let tracker = job.tracker();
     let mut scratch = Scratch::new(tracker);
     let (mut dice, mut worse, mut worst, mut looked) = (Dice(1), vec![], 1.0_f64, 0);
@@ -90,7 +94,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         let answer = &whole.answers[frame];
         let mut best = (answer.minimised(), "tracked");
         let first = tracker.solve_first(&mut scratch, &seen, frame, 4);
-        let mut offer = |f: f64, name| if f < best.0 { best = (f, name) };
+        let mut offer = |f: f64, name| {
+            if f < best.0 {
+                best = (f, name)
+            }
+        };
         if first.status.is_solved() {
             offer(first.minimised(), "first guesses");
         }
@@ -126,7 +134,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         let Ok(job) = Job::new(Arc::clone(&model), &recording, &part) else { continue };
         let part = job.run(&mut |_, _| {});
         for (i, values) in part.motion.frames.iter().enumerate() {
-            for id in model.coordinate_ids().filter(|&id| model.coordinate(id).kind == CoordinateKind::Rotation) {
+            for id in model
+                .coordinate_ids()
+                .filter(|&id| model.coordinate(id).kind == CoordinateKind::Rotation)
+            {
                 let off = model.value(values, id) - model.value(&whole.motion.frames[at + i], id);
                 let off = off.sin().atan2(off.cos()).abs().to_degrees();
                 let key = model.coordinate_key(id);
@@ -137,7 +148,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
         }
         let ratio = |i: usize| part.answers[i].minimised() / whole.answers[at + i].minimised();
-        cuts.push((0..part.answers.len()).map(ratio).fold(1.0, |m: f64, r| if (r - 1.0).abs() > (m - 1.0).abs() { r } else { m }));
+        cuts.push(
+            (0..part.answers.len())
+                .map(ratio)
+                .fold(1.0, |m: f64, r| if (r - 1.0).abs() > (m - 1.0).abs() { r } else { m }),
+        );
     }
     let mut largest: Vec<_> = largest.into_iter().collect();
     largest.sort_by(|a, b| b.1.0.total_cmp(&a.1.0));

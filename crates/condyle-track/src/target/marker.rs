@@ -126,7 +126,8 @@ impl Target for Markers {
     fn linearise(&self, frame: &mut Frame<'_>, local: &mut LocalModel) {
         let n = frame.tracker.unknown_len();
         let scale = 2.0 * frame.marker_scale();
-        let Buffers { jacobian, weights, points, errors, moments, levers, .. } = &mut *frame.buffers;
+        let Buffers { jacobian, weights, points, errors, moments, levers, .. } =
+            &mut *frame.buffers;
         moments.fill(Moments::ZERO);
         for (i, marker) in self.placed.iter().enumerate() {
             if let Some(group) = marker.group

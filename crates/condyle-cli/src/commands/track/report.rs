@@ -93,12 +93,16 @@ pub(super) fn print(
     let rows: Vec<Vec<String>> = worst.iter().take(3).map(row).collect();
     text.push_str(&output::columns(&rows));
     for swap in &report.swaps {
-        text.push_str(&format!("  {swap}
-"));
+        text.push_str(&format!(
+            "  {swap}
+"
+        ));
     }
     for faulty in &report.faulty {
-        text.push_str(&format!("  {faulty}
-"));
+        text.push_str(&format!(
+            "  {faulty}
+"
+        ));
     }
     if let [first, ..] = s.failed[..] {
         text.push_str(&format!(
@@ -118,7 +122,10 @@ pub(super) fn print(
     let unsure = unsure.filter(|d| d.determined < 0.9 && !report.unmoved.contains(&d.coordinate));
     let unsure: Vec<String> = unsure.map(|d| d.coordinate.clone()).collect();
     if !unsure.is_empty() {
-        text.push_str(&format!("  hardly determined by the markers: {}\n", few(unsure.into_iter())));
+        text.push_str(&format!(
+            "  hardly determined by the markers: {}\n",
+            few(unsure.into_iter())
+        ));
     }
     if !report.unmoved.is_empty() {
         let keys = few(report.unmoved.iter().cloned());
@@ -126,7 +133,9 @@ pub(super) fn print(
     }
     if let [first, ..] = report.jumps[..] {
         let n = report.jumps.len();
-        text.push_str(&format!("  {n} jumps of more than 60 degrees, the first at frame {first}\n"));
+        text.push_str(&format!(
+            "  {n} jumps of more than 60 degrees, the first at frame {first}\n"
+        ));
     }
     if let Some(cause) = &report.verdict.cause {
         text.push_str(&format!("  not plausible: {}\n", cause.sentence()));
