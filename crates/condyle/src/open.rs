@@ -1,6 +1,7 @@
 //! Files by path, with errors and warnings that carry the path.
 
 use crate::shipped;
+#[cfg(any(feature = "document", feature = "opensim"))]
 use crate::tracking::Request;
 #[cfg(feature = "document")]
 use condyle_diagnostics::did_you_mean;
@@ -269,6 +270,7 @@ pub fn setup(path: &Path) -> Result<Read<IkSetup>, OpenError> {
 ///
 /// # Errors
 /// As [`content`], of the setup and of the files that it names.
+#[cfg(any(feature = "document", feature = "opensim"))]
 pub fn request(path: &Path) -> Result<Read<Request>, OpenError> {
     let Read { value, mut warnings } = content(path, Some(ContentKind::Setup))?;
     let mut request = match &value {
@@ -306,6 +308,7 @@ pub fn request(path: &Path) -> Result<Read<Request>, OpenError> {
 }
 
 /// A warning about a file that another names.
+#[cfg(any(feature = "document", feature = "opensim"))]
 fn of_file(path: &Path, said: Diagnostic) -> Diagnostic {
     Diagnostic::new(said.severity, said.code, located(path, &said))
 }
