@@ -22,6 +22,7 @@
 //! | [`Targets`] | what is tracked: markers, coordinates, postures, loops |
 //! | [`Tracker`] | one model and its targets, ready to solve frames by its [`Rules`] |
 //! | [`FrameAnswer`] | one frame: posture, fit, status |
+//! | [`Trust`] | how far each coordinate of a frame follows from the markers |
 //! | [`Stream`] | frames as they come |
 //! | [`sequence`] | many frames: cut, solve a chunk, stitch |
 //! | [`robust`] | faulty markers: left out, exchanged labels put right |

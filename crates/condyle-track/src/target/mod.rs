@@ -17,7 +17,8 @@
 //! Hessian   2 Σ w ∂ρᵀ ∂ρ           the lower triangle of n × n, row-major
 //! ```
 //!
-//! The Hessian is that of Gauss and Newton: second derivatives of ρ are left out. Only markers are divided
+//! The Hessian is that of Gauss and Newton: second derivatives of ρ are left out, but for those of markers
+//! where the solver asks for them ([`LocalModel::curved`]), near the minimum. Only markers are divided
 //! by the sum of the weights seen. The order of the kinds is that of all sums, and the order of the
 //! targets of a kind that in which they were given, so that the same question has the same bits for an
 //! answer. A target that has nothing to say about a frame adds nothing.
