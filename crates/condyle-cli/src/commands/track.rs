@@ -60,15 +60,18 @@ impl Track {
         for trial in &self.trials {
             let recording = warned(trial, open::recording(trial)?);
             let bar = frames_bar(&trial.file_name().unwrap_or_default().to_string_lossy());
+            let mut solved = Instant::now();
             let mut progress = |done: usize, total: usize| {
                 bar.set_length(total as u64);
                 bar.set_position(done as u64);
+                solved = Instant::now();
             };
             let job = Job::new(Arc::clone(&model), &recording, &request)
                 .map_err(|error| Failure::new(format!("{}: {error}", trial.display())))?;
             let start = Instant::now();
             let tracking = job.run(&mut progress);
-            let seconds = start.elapsed().as_secs_f64();
+            // Solving alone: what follows the last progress is judging.
+            let seconds = solved.duration_since(start).as_secs_f64();
             bar.finish_and_clear();
             warn_about(trial, &tracking.warnings);
             let report = tracking.report(&model);

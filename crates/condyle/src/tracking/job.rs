@@ -86,7 +86,8 @@ impl<'a> Job<'a> {
     }
 
     /// Tracks all frames; with a robust request, faults are found and the frames that they touch tracked
-    /// again. `progress` is called with the number of frames that are done and their total.
+    /// again. `progress` is called with the number of frames that are done and their total, the last time
+    /// when all are solved; what follows is how far they can be trusted.
     ///
     /// Frames that cannot be solved are marked in their answer.
     pub fn run(&self, mut progress: &mut (dyn FnMut(usize, usize) + Send)) -> Tracking {
@@ -123,6 +124,7 @@ impl<'a> Job<'a> {
                 fault: f.fault,
             }));
         }
+        progress(answers.len(), answers.len());
         let trust = self.trust(&Corrected { recorded: &recorded, repairs: &repairs }, &answers);
         let jumps = self.jumps(&answers).map(|frame| first + frame).collect();
         let motion = Motion {
