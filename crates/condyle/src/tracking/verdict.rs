@@ -9,15 +9,16 @@
 //! exchanged, is less like them); where it is worse than half of that, if it makes them clearly more alike;
 //! where it is worse than the bound, always.
 
-use super::assignment::assign;
 use super::cloud::{Cloud, Direction};
 use super::variant::axis_name;
 use super::{Tracking, Variant, sides};
 use condyle_diagnostics::Diagnostic;
-use condyle_math::{Mat3, Vec3};
+use condyle_math::Vec3;
 use condyle_model::{CoordinateId, CoordinateKind, Mode, Pose, SegmentId, UpAxis};
 use condyle_motion::Recording;
 use condyle_track::{FrameAnswer, Scratch, Tracker};
+
+mod labels;
 
 /// Whether a trial's fit can be believed.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,15 +59,6 @@ const HALF: f64 = 0.5;
 const GUESSES: usize = 4;
 /// Another cause is named, too, where its error is less than so many times that of the best.
 const AS_GOOD: f64 = 1.5;
-/// Two labels may be exchanged where that leaves less than this share of their squared errors, and these
-/// are more than this share of those of all.
-const EXCHANGED: f64 = 0.3;
-const FAR_OFF: f64 = 0.1;
-/// Rounds of tracking and assigning labels anew.
-const ROUNDS: usize = 5;
-/// Directions that a body with unknown labels may face.
-const HEADINGS: u32 = 8;
-
 /// Judges a tracking of a recording; warnings are about what is odd, but fits.
 pub(super) fn judge(
     tracker: &Tracker,
@@ -384,96 +376,6 @@ impl<'a> Trial<'a> {
         self.tracker.solve_first(scratch, &seen, self.numbers[frame], GUESSES)
     }
 
-    /// Labels assigned anew to the markers that they are nearest to, in a few rounds; the best of some
-    /// beginnings, with the RMS of the frames.
-    fn permuted(&mut self) -> Option<(Variant, f64)> {
-        let mut best: Option<(Variant, f64)> = None;
-        for beginning in self.beginnings() {
-            let mut predicted = beginning;
-            let mut order: Vec<usize> = vec![];
-            for _ in 0..ROUNDS {
-                let assigned = self.assigned(&predicted);
-                if assigned == order {
-                    break;
-                }
-                order = assigned;
-                let variant = self.permutation(&order);
-                let changed = variant.of(&self.sample);
-                let mut rms = 0.0;
-                for (frame, points) in predicted.iter_mut().enumerate() {
-                    let answer = self.solved(&changed, frame);
-                    rms += answer.rms() / self.numbers.len() as f64;
-                    *points = places(self.tracker, &answer.coordinates, &mut self.pose)?;
-                }
-                if best.as_ref().is_none_or(|(_, least)| rms < *least) {
-                    best = Some((variant, rms));
-                }
-            }
-        }
-        best
-    }
-
-    /// Where the markers may be in each frame whatever their labels say: as tracked, and as at rest
-    /// about the middle of those seen, turned about the upward axis.
-    fn beginnings(&mut self) -> Vec<Vec<Vec<Vec3>>> {
-        let mut beginnings: Vec<_> = self.tracked().into_iter().collect();
-        let up = [Vec3::X, Vec3::Y, Vec3::Z][self.up()];
-        let middle = |points: &mut dyn Iterator<Item = Vec3>| {
-            let (sum, n) = points.fold((Vec3::ZERO, 0.0), |(sum, n), p| (sum + p, n + 1.0));
-            sum * (1.0 / f64::max(n, 1.0))
-        };
-        let at_rest = middle(&mut self.places.iter().copied());
-        let turned = (0..HEADINGS).map(|heading| {
-            let angle = std::f64::consts::TAU * f64::from(heading) / f64::from(HEADINGS);
-            let turn = Mat3::rotation_about(up, angle.sin_cos());
-            let in_frame = |frame: usize| {
-                let row = self.sample.frame(frame);
-                let seen = self.labels.iter().filter_map(|&label| row.get(label)?.position());
-                let there = middle(&mut seen.map(Vec3::from));
-                self.places.iter().map(|&p| turn * (p - at_rest) + there).collect::<Vec<_>>()
-            };
-            (0..self.numbers.len()).map(in_frame).collect::<Vec<_>>()
-        });
-        let mut turned: Vec<_> = turned.map(|t| (self.cost(&t, &self.assigned(&t)), t)).collect();
-        turned.sort_by(|a, b| a.0.total_cmp(&b.0));
-        beginnings.extend(turned.into_iter().take(2).map(|(_, points)| points));
-        beginnings
-    }
-
-    /// Mean squared distances between each marker, at its place in each frame, and each label.
-    fn costs(&self, points: &[Vec<Vec3>]) -> Vec<f64> {
-        let n = self.labels.len();
-        let mut costs = vec![0.0; n * n];
-        for (marker, row) in costs.chunks_exact_mut(n.max(1)).enumerate() {
-            for (cost, &label) in row.iter_mut().zip(self.labels) {
-                let off = |(frame, points): (usize, &Vec<Vec3>)| {
-                    let seen = self.sample.position(frame, label)?;
-                    Some((points[marker] - Vec3::from(seen)).norm_squared())
-                };
-                *cost = mean(points.iter().enumerate().filter_map(off));
-            }
-        }
-        costs
-    }
-
-    /// For each marker target the one whose label it gets.
-    fn assigned(&self, points: &[Vec<Vec3>]) -> Vec<usize> {
-        assign(&self.costs(points), self.labels.len())
-    }
-
-    fn cost(&self, points: &[Vec<Vec3>], order: &[usize]) -> f64 {
-        let (costs, n) = (self.costs(points), self.labels.len());
-        order.iter().enumerate().map(|(marker, label)| costs[marker * n + label]).sum()
-    }
-
-    fn permutation(&self, order: &[usize]) -> Variant {
-        let mut from: Vec<usize> = (0..self.sample.labels.len()).collect();
-        for (&label, &other) in self.labels.iter().zip(order) {
-            from[label] = self.labels[other];
-        }
-        Variant::Permuted(from)
-    }
-
     /// The best of the causes tried, and those that are as good, with the errors.
     fn compared(&self, tried: &[(Variant, f64)]) -> String {
         let least = tried.first().map_or(0.0, |(_, rms)| *rms);
@@ -485,33 +387,6 @@ impl<'a> Trial<'a> {
             1e3 * least,
             1e3 * self.rms(),
         )
-    }
-
-    /// A warning about pairs of labels that fit far better with their names exchanged, throughout.
-    fn exchanged(&mut self) -> Option<Diagnostic> {
-        let tracked = self.tracked()?;
-        let (costs, n) = (self.costs(&tracked), self.labels.len());
-        let all: f64 = (0..n).map(|i| costs[i * n + i]).sum();
-        let share = FAR_OFF * all;
-        let mut pairs = vec![];
-        for a in 0..n {
-            for b in a + 1..n {
-                let before = costs[a * n + a] + costs[b * n + b];
-                let after = costs[a * n + b] + costs[b * n + a];
-                if after < EXCHANGED * before && before > share {
-                    let label = |marker: usize| &self.sample.labels[self.labels[marker]];
-                    pairs.push(format!("`{}` and `{}`", label(a), label(b)));
-                }
-            }
-        }
-        let message = format!("labels may be exchanged throughout: {}", pairs.join(", "));
-        (!pairs.is_empty()).then(|| Diagnostic::warning("track/exchanged", message))
-    }
-
-    /// Where the markers are in each frame as tracked.
-    fn tracked(&mut self) -> Option<Vec<Vec<Vec3>>> {
-        let of = |a: &&FrameAnswer| places(self.tracker, &a.coordinates, &mut self.pose);
-        self.answers.iter().map(of).collect()
     }
 }
 
