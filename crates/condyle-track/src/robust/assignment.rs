@@ -5,7 +5,7 @@
 /// Rows are added one by one along shortest augmenting paths with potentials (Kuhn 1955, Munkres 1957,
 /// in the form of Jonker & Volgenant 1987): O(rows² columns). There must be at least as many columns
 /// as rows, else `None`.
-pub(super) fn assign(
+pub fn assign(
     rows: usize,
     columns: usize,
     cost: impl Fn(usize, usize) -> f64,

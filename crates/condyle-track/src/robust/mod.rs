@@ -19,6 +19,7 @@ mod offsets;
 mod search;
 mod trial;
 
+pub use assignment::assign;
 pub use exchange::exchanged_throughout;
 pub use faults::{Exchanged, Fault, Faulty, describe};
 pub use offsets::FEWEST_FRAMES;

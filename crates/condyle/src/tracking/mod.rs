@@ -4,7 +4,6 @@
 //! solves it in a second step. What comes out is a [`Tracking`], summed up in a [`Report`]. Frames
 //! that come one by one are solved by a [`Stream`], over a [`Tracker`] that shares its model.
 
-mod assignment;
 mod cloud;
 mod job;
 pub(crate) mod posture;

@@ -2,10 +2,10 @@
 
 use super::{Trial, mean, places};
 use crate::tracking::Variant;
-use crate::tracking::assignment::assign;
 use condyle_diagnostics::Diagnostic;
 use condyle_math::{Mat3, Vec3};
 use condyle_track::FrameAnswer;
+use condyle_track::robust::assign;
 
 /// Two labels may be exchanged where that leaves less than this share of their squared errors, these are
 /// more than the second share of those of all labels, and those of all such pairs more than the third.
@@ -92,7 +92,9 @@ impl Trial<'_> {
 
     /// For each marker target the one whose label it gets.
     fn assigned(&self, points: &[Vec<Vec3>]) -> Vec<usize> {
-        assign(&self.costs(points), self.labels.len())
+        let (costs, n) = (self.costs(points), self.labels.len());
+        let assigned = assign(n, n, |marker, label| costs[marker * n + label]);
+        assigned.unwrap_or_else(|| (0..n).collect())
     }
 
     fn cost(&self, points: &[Vec<Vec3>], order: &[usize]) -> f64 {
