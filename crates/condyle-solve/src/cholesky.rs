@@ -130,15 +130,22 @@ pub fn factor_upper(a: &mut [f64], n: usize) -> Result<(), PivotFailure> {
 pub fn solve(factor: &[f64], n: usize, b: &mut [f64]) {
     assert_eq!(factor.len(), n * n, "the factor must have {n} x {n} numbers");
     assert_eq!(b.len(), n, "the right-hand side must have {n} numbers");
-    // Forward substitution by rows of U: once y_k is known, its contribution to the rest is
-    // removed.
+    solve_forward(factor, n, b);
+    solve_backward(factor, n, b);
+}
+
+/// `b := U⁻ᵀ b`, by rows of U: once an entry is known, its contribution to the rest is removed.
+pub(crate) fn solve_forward(factor: &[f64], n: usize, b: &mut [f64]) {
     for k in 0..n {
         let row = &factor[k * n + k..k * n + n];
         let (head, tail) = b[k..].split_first_mut().expect("k < n");
         *head /= row[0];
         axpy(tail, -*head, &row[1..]);
     }
-    // Back substitution.
+}
+
+/// `b := U⁻¹ b`.
+pub(crate) fn solve_backward(factor: &[f64], n: usize, b: &mut [f64]) {
     for k in (0..n).rev() {
         let row = &factor[k * n + k..k * n + n];
         let (head, tail) = b[k..].split_first_mut().expect("k < n");
@@ -146,8 +153,23 @@ pub fn solve(factor: &[f64], n: usize, b: &mut [f64]) {
     }
 }
 
-/// Writes `L⁻¹` (lower triangular, row-major, zeros above) from the factor `U = Lᵀ`.
-pub(crate) fn invert_lower(factor: &[f64], n: usize, inverse: &mut [f64]) {
+/// Writes `L⁻¹` (lower triangular, row-major, zeros above) from the factor `U = Lᵀ` of [`factor`].
+///
+/// - `factor`: `n × n` row-major, `U` in the upper triangle.
+/// - `inverse`: `n × n` numbers, overwritten.
+///
+/// # Panics
+///
+/// If a slice is shorter than `n * n`.
+///
+/// ```
+/// let mut a = [4.0, 0.0, 2.0, 5.0]; // L = [2 0; 1 2]
+/// condyle_solve::cholesky::factor(&mut a, 2).unwrap();
+/// let mut inverse = [f64::NAN; 4];
+/// condyle_solve::cholesky::invert_lower(&a, 2, &mut inverse);
+/// assert_eq!(inverse, [0.5, 0.0, -0.25, 0.5]);
+/// ```
+pub fn invert_lower(factor: &[f64], n: usize, inverse: &mut [f64]) {
     inverse.fill(0.0);
     for i in 0..n {
         let (done, rest) = inverse.split_at_mut(i * n);

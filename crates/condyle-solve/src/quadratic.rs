@@ -2,16 +2,16 @@
 //!
 //! Two algorithms share one [`Workspace`] and one warm start:
 //!
-//! - **Bounds only** (or with inequalities that are not active at the solution): block principal
-//!   pivoting. For a guess of the active bounds, the free variables are solved for by one Cholesky
-//!   factorisation, and every variable that violates its bound or whose multiplier has the wrong
-//!   sign changes its state at once. When that stops making progress, one variable at a time is
-//!   changed by Murty's rule, which cannot cycle for a positive definite matrix (Júdice and Pires
-//!   1994). A correct guess costs one factorisation of the free block.
-//! - **With rows**: the dual active-set method of Goldfarb and Idnani (1983), with bounds as unit
-//!   rows. It starts from the last active set, drops constraints whose multiplier has the wrong
-//!   sign, and adds violated constraints one by one; it also detects infeasibility. It is used as
-//!   well where pivoting stalls.
+//! - **Without equalities**: block principal pivoting. For a guess of the active bounds and rows, the
+//!   free variables are solved for by one Cholesky factorisation, and every constraint that is
+//!   violated or whose multiplier has the wrong sign changes its state at once. When that stops
+//!   making progress, one variable at a time is changed by Murty's rule, which cannot cycle for a
+//!   positive definite matrix and bounds alone (Júdice and Pires 1994). A correct guess costs one
+//!   factorisation of the free block.
+//! - **With equalities**, and where pivoting stalls: the dual active-set method of Goldfarb and
+//!   Idnani (1983), with bounds as unit rows. It starts from the last active set, drops constraints
+//!   whose multiplier has the wrong sign, and adds violated constraints one by one; it also detects
+//!   infeasibility.
 //!
 //! Both count their iterations and stop at a limit with [`Status::IterationLimit`].
 
@@ -76,7 +76,7 @@ impl Workspace {
     pub fn new(n: usize, equalities: usize, inequalities: usize) -> Self {
         Self {
             solution: Solution::new(n, equalities, inequalities),
-            pivoting: Pivoting::new(n),
+            pivoting: Pivoting::new(n, inequalities),
             set: WorkingSet::new(n, equalities, inequalities),
             consistency: DEFAULT_CONSISTENCY,
             iteration_limit: None,
@@ -124,8 +124,7 @@ impl Workspace {
     /// assert_eq!(workspace.solve(&program).iterations(), 2);
     /// ```
     pub fn forget(&mut self) {
-        self.solution.bounds.fill(BoundState::Free);
-        self.solution.active_rows.fill(false);
+        self.solution.forget();
     }
 
     /// Sets the residual below which linearly dependent constraints count as consistent.
@@ -233,16 +232,15 @@ impl Workspace {
             };
         }
 
-        // Without equalities and active rows, try the bounds alone: a minimiser over a subset of
-        // the constraints that satisfies the others is the minimiser.
-        let bounds_alone = equalities == 0 && !solution.active_rows.contains(&true);
-        let done = bounds_alone
-            && match pivoting::solve(program, &mut self.pivoting, solution, limit) {
-                pivoting::Outcome::Solved => dual::rows_satisfied(program, solution),
-                pivoting::Outcome::Failed => true,
-                pivoting::Outcome::Stalled => false,
-            };
+        let done = equalities == 0
+            && pivoting::solve(program, &mut self.pivoting, solution, limit)
+                != pivoting::Outcome::Stalled;
         if !done {
+            if inequalities > 0 && equalities == 0 {
+                // Where pivoting stalled with rows its states lead nowhere.
+                self.solution.forget();
+            }
+            let solution = &mut self.solution;
             dual::solve(program, &mut self.set, solution, limit, self.consistency);
         }
         if self.solution.status == Status::Solved && !self.solution.is_finite() {

@@ -4,7 +4,7 @@ use crate::answer::FrameAnswer;
 use crate::target::Markers;
 use crate::tracker::{FIXED, Scratch, Tracker};
 use condyle_math::{Quat, Vec3};
-use condyle_model::{CoordinateId, CoordinateKind, JointSetId, Mode, Model};
+use condyle_model::{CoordinateId, CoordinateKind, JointSetId, Model};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// At most so many angles are tried at all quarter turns.
@@ -75,8 +75,7 @@ impl Tracker {
     ) -> Vec<Vec<f64>> {
         let limb = &self.limbs[limb];
         let mean = |scratch: &mut Scratch, stored: &[f64], all: bool| -> Option<f64> {
-            let pose = &mut scratch.buffers.pose;
-            self.program.evaluate(stored, Mode::Open, pose).ok()?;
+            let pose = scratch.buffers.pose_at(self, stored)?;
             let (mut sum, mut total) = (0.0, 0.0);
             for (marker, seen) in self.markers.placed.iter().zip(seen) {
                 let counts = all || marker.group.is_some_and(|g| limb.groups.contains(&g));
@@ -176,8 +175,7 @@ impl Tracker {
         stored: &mut [f64],
     ) -> Option<f64> {
         self.hold(stored);
-        let pose = &mut scratch.buffers.pose;
-        self.program.evaluate(stored, Mode::Open, pose).ok()?;
+        let pose = scratch.buffers.pose_at(self, stored)?;
         let seen = || {
             let markers = self.markers.placed.iter().zip(seen);
             markers.filter_map(|(marker, seen)| {

@@ -23,6 +23,8 @@ pub(crate) struct Frame<'a> {
 pub(crate) struct Buffers {
     pub pose: Pose,
     pub jacobian: Jacobian,
+    /// Whether the Jacobian and the closures are those of the pose.
+    pub differentiated: bool,
     pub closures: ClosureRows,
     /// Stored numbers where the solver is, and where it tries to go.
     pub current: Vec<f64>,
@@ -33,10 +35,32 @@ pub(crate) struct Buffers {
     pub points: Vec<Vec3>,
     pub errors: Vec<Vec3>,
     pub total_weight: f64,
-    /// For each group of markers.
+    /// For each group of markers, and for each set of groups.
     pub moments: Vec<Moments>,
-    /// For each motion of a group of markers.
-    pub levers: Vec<Vec3>,
+    pub summed: Vec<Moments>,
+}
+
+impl Buffers {
+    /// Poses the model plainly; `None` if there are not as many numbers as it stores.
+    pub(crate) fn pose_at(&mut self, tracker: &Tracker, stored: &[f64]) -> Option<&Pose> {
+        self.differentiated = false;
+        tracker.part.evaluate(stored, Mode::Open, &mut self.pose).ok()?;
+        Some(&self.pose)
+    }
+
+    /// Poses the model at `trial` with all derivatives, if it is not there. A frame begins where the
+    /// last one ended.
+    fn differentiate(&mut self, tracker: &Tracker) {
+        let Self { pose, jacobian, closures, trial, .. } = self;
+        let same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits();
+        if self.differentiated && pose.effective().iter().zip(&*trial).all(same) {
+            return;
+        }
+        let evaluated = tracker.part.evaluate_with_jacobian(trial, pose, jacobian);
+        debug_assert!(evaluated.is_ok(), "buffers are made for this program");
+        closures.update(&tracker.model, &tracker.part, pose, Some(jacobian));
+        self.differentiated = true;
+    }
 }
 
 impl Frame<'_> {
@@ -62,13 +86,12 @@ impl Frame<'_> {
         self.buffers.pose.coordinate(&self.tracker.model, id)[0]
     }
 
-    /// Evaluates the final posture plainly and writes down how it fits.
+    /// Writes down the final posture and how it fits.
     pub(crate) fn measure(&mut self, answer: &mut FrameAnswer) {
         let tracker = self.tracker;
-        let Buffers { pose, closures, current, .. } = &mut *self.buffers;
-        let evaluated = tracker.program.evaluate(current, Mode::Open, pose);
-        debug_assert!(evaluated.is_ok(), "buffers are made for this program");
-        closures.update(&tracker.model, &tracker.program, pose, None);
+        let Buffers { current, trial, .. } = &mut *self.buffers;
+        trial.copy_from_slice(current);
+        self.buffers.differentiate(tracker);
         self.weigh();
         let sums = target::measure(self);
         let Buffers { pose, closures, weights, errors, .. } = &*self.buffers;
@@ -89,7 +112,7 @@ impl Frame<'_> {
 impl Problem for Frame<'_> {
     fn evaluate(&mut self, step: &[f64], equalities: &mut [f64], inequalities: &mut [f64]) -> f64 {
         let tracker = self.tracker;
-        let Buffers { pose, jacobian, closures, current, trial, tangent, .. } = &mut *self.buffers;
+        let Buffers { current, trial, tangent, .. } = &mut *self.buffers;
         for (unknown, &direction) in tracker.directions.iter().enumerate() {
             tangent[direction as usize] = step[unknown];
         }
@@ -98,9 +121,8 @@ impl Problem for Frame<'_> {
         for &(place, lower, upper) in tracker.stored.iter().flatten() {
             trial[place] = trial[place].max(lower).min(upper);
         }
-        let evaluated = tracker.program.evaluate_with_jacobian(trial, pose, jacobian);
-        debug_assert!(evaluated.is_ok(), "buffers are made for this program");
-        closures.update(&tracker.model, &tracker.program, pose, Some(jacobian));
+        self.buffers.differentiate(tracker);
+        let Buffers { pose, closures, .. } = &*self.buffers;
         // As many as there are rows of loops, or none where these have a weight.
         equalities.copy_from_slice(&closures.residuals[..equalities.len()]);
         for (row, value) in inequalities.iter_mut().enumerate() {
@@ -131,7 +153,7 @@ impl Problem for Frame<'_> {
         for row in 0..tracker.limit_rows {
             let line = &mut local.inequality_rows[row * n..(row + 1) * n];
             line.fill(0.0);
-            for &(direction, slot) in tracker.program.limit_row_directions(row) {
+            for &(direction, slot) in tracker.part.limit_row_directions(row) {
                 if let Some(entry) = line.get_mut(tracker.unknowns[direction as usize] as usize) {
                     *entry += buffers.jacobian.derivative(slot);
                 }

@@ -35,13 +35,16 @@ impl Default for Rules {
 pub struct Tracker {
     pub(crate) model: Arc<Model>,
     pub(crate) program: Program,
+    /// The program of the segments that carry what is tracked, which frames are solved with.
+    pub(crate) part: Program,
     pub(crate) targets: Targets,
     pub(crate) rules: Rules,
     pub(crate) markers: Markers,
     /// For each direction its unknown, or [`FIXED`].
     pub(crate) unknowns: Vec<u32>,
-    /// For each unknown its direction.
+    /// For each unknown its direction and its coordinate.
     pub(crate) directions: Vec<u32>,
+    pub(crate) coordinates: Vec<CoordinateId>,
     /// For each unknown of a coordinate of one number: where that is stored, and its bounds.
     pub(crate) stored: Vec<Option<(usize, f64, f64)>>,
     pub(crate) defaults: Vec<f64>,
@@ -66,7 +69,7 @@ impl Tracker {
         let mut defaults = model.defaults();
         let moved = targets.directions(&model, &program, limit_rows);
         let mut unknowns = vec![FIXED; model.tangent_len()];
-        let (mut directions, mut stored) = (vec![], vec![]);
+        let (mut directions, mut coordinates, mut stored) = (vec![], vec![], vec![]);
         for id in model.coordinate_ids() {
             let coordinate = model.coordinate(id);
             if coordinate.locked || coordinate.follows.is_some() {
@@ -89,6 +92,7 @@ impl Tracker {
             for direction in model.tangent_range(id) {
                 unknowns[direction] = directions.len() as u32;
                 directions.push(direction as u32);
+                coordinates.push(id);
                 stored.push((coordinate.kind != CoordinateKind::Orientation).then(|| {
                     let free = (f64::NEG_INFINITY, f64::INFINITY);
                     let (lower, upper) =
@@ -97,7 +101,9 @@ impl Tracker {
                 }));
             }
         }
-        let markers = Markers::new(&targets.markers, &model, &program, &unknowns);
+        let moving: Vec<bool> = unknowns.iter().map(|&unknown| unknown != FIXED).collect();
+        let part = Program::compile_for(&model, targets.segments(&model), &moving);
+        let markers = Markers::new(&targets.markers, &model, &part, &unknowns);
         let branches = Branches::find(&model, &program, &targets, &mut stored);
         let limbs = Limb::of(&model, &markers, &unknowns, &stored);
         // Rotations that move every group of markers.
@@ -112,11 +118,13 @@ impl Tracker {
         Self {
             model,
             program,
+            part,
             targets,
             rules,
             markers,
             unknowns,
             directions,
+            coordinates,
             stored,
             defaults,
             limit_rows,
@@ -166,25 +174,22 @@ pub struct Scratch {
 impl Scratch {
     /// Buffers for a tracker.
     pub fn new(tracker: &Tracker) -> Self {
-        let (model, program) = (&tracker.model, &tracker.program);
+        let (model, program) = (&tracker.model, &tracker.part);
         let closures = ClosureRows::new(model);
         let equalities = if tracker.targets.close_exactly() { closures.len() } else { 0 };
         // A natural step: half a radian; lengths are linear, so a metre or two at a time.
-        let natural = |&direction: &u32| {
-            let mut ids = model.coordinate_ids();
-            let id = ids.find(|&id| model.tangent_range(id).contains(&(direction as usize)));
-            match id.map(|id| model.coordinate(id).kind) {
-                Some(CoordinateKind::Translation) => 4.0,
-                _ => 1.0,
-            }
+        let natural = |&id: &CoordinateId| match model.coordinate(id).kind {
+            CoordinateKind::Translation => 4.0,
+            _ => 1.0,
         };
-        let scale: Vec<f64> = tracker.directions.iter().map(natural).collect();
+        let scale: Vec<f64> = tracker.coordinates.iter().map(natural).collect();
         let (stored, markers) = (program.stored_len(), tracker.markers.placed.len());
         Self {
             solver: Solver::new(&scale, equalities, tracker.limit_rows),
             buffers: Buffers {
                 pose: Pose::new(program),
                 jacobian: Jacobian::new(program),
+                differentiated: false,
                 closures,
                 current: vec![0.0; stored],
                 trial: vec![0.0; stored],
@@ -194,7 +199,7 @@ impl Scratch {
                 errors: vec![Vec3::ZERO; markers],
                 total_weight: 0.0,
                 moments: vec![Moments::ZERO; tracker.markers.groups.len()],
-                levers: Vec::with_capacity(tracker.unknown_len()),
+                summed: vec![Moments::ZERO; tracker.markers.pairs.sets.len()],
             },
         }
     }

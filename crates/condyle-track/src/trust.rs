@@ -81,7 +81,7 @@ impl Tracker {
             if total > 0.0 { 2.0 * NOISE * NOISE * squares / (total * total) } else { 0.0 };
         let unknowns = self.trust_of_unknowns(&data, &assumed, answer, loops, variance);
         let of = |id: CoordinateId| {
-            let directions = self.program.coordinate_directions(&self.model, id).iter();
+            let directions = self.part.coordinate_directions(&self.model, id).iter();
             let own = self.model.tangent_range(id);
             let coupled = self.model.coordinate(id).follows.is_some();
             let leaders = directions.map(|&(d, _)| d as usize).filter(|_| coupled);
@@ -143,15 +143,17 @@ impl Tracker {
             free.iter().for_each(|&i| trust[i] = Trust::Weak);
             return trust;
         }
-        let mut column = vec![0.0; m];
+        // H⁻¹ = L⁻ᵀ L⁻¹, of which few entries are needed: what is assumed ties few unknowns.
+        let mut inverse = vec![0.0; m * m];
+        cholesky::invert_lower(&all, m, &mut inverse);
+        let entry = |a: usize, b: usize| -> f64 {
+            (a.max(b)..m).map(|k| inverse[k * m + a] * inverse[k * m + b]).sum()
+        };
         for (a, &unknown) in free.iter().enumerate() {
-            column.fill(0.0);
-            column[a] = 1.0;
-            cholesky::solve(&all, m, &mut column);
-            let held: f64 = (0..m).map(|b| column[b] * rest[b * m + a]).sum();
-            let deviation = (variance * column[a]).sqrt();
-            let direction = self.directions[unknown] as usize;
-            let most = match self.kind_of(direction) {
+            let tied = (0..m).filter(|&b| rest[a * m + b] != 0.0);
+            let held: f64 = tied.map(|b| entry(a, b) * rest[a * m + b]).sum();
+            let deviation = (variance * entry(a, a)).sqrt();
+            let most = match self.model.coordinate(self.coordinates[unknown]).kind {
                 CoordinateKind::Translation => WEAK_LENGTH,
                 _ => WEAK_ANGLE,
             };
@@ -162,12 +164,6 @@ impl Tracker {
             };
         }
         trust
-    }
-
-    fn kind_of(&self, direction: usize) -> CoordinateKind {
-        let mut ids = self.model.coordinate_ids();
-        let id = ids.find(|&id| self.model.tangent_range(id).contains(&direction));
-        id.map_or(CoordinateKind::Other, |id| self.model.coordinate(id).kind)
     }
 }
 

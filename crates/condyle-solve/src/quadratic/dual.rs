@@ -13,21 +13,6 @@ const CONSISTENCY_RELATIVE: f64 = 1e-8;
 /// A violation below this fraction of the norm of the unconstrained minimiser is not enforced.
 const ROUNDING: f64 = 1e-20;
 
-/// Whether the point satisfies all inequality rows.
-pub(super) fn rows_satisfied(program: &QuadraticProgram<'_>, solution: &Solution) -> bool {
-    let d = &solution.d;
-    let size = dot(d, d).sqrt();
-    (0..program.inequality_values.len()).all(|k| {
-        let row = program.inequality_row(k);
-        let value = program.inequality_values[k];
-        let tolerance = FEASIBILITY * (value.abs() + dot(row, row).sqrt() * size);
-        // False for NaN and for misplaced infinities, which the dual method reports.
-        value == f64::NEG_INFINITY
-            || (tolerance < f64::INFINITY
-                && slack(program, Constraint::Inequality(k), d) >= -tolerance)
-    })
-}
-
 /// Minimises over all constraints of `program` from the active set in `solution`.
 pub(super) fn solve(
     program: &QuadraticProgram<'_>,

@@ -118,6 +118,16 @@ impl Solution {
         self.iterations = 0;
     }
 
+    /// Clears the active set; fixed variables stay fixed.
+    pub(super) fn forget(&mut self) {
+        for bound in &mut self.bounds {
+            if *bound != BoundState::Fixed {
+                *bound = BoundState::Free;
+            }
+        }
+        self.active_rows.fill(false);
+    }
+
     pub(super) fn clear_multipliers(&mut self) {
         self.bound_multipliers.fill(0.0);
         self.equality_multipliers.fill(0.0);

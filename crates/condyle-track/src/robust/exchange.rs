@@ -6,7 +6,6 @@ use crate::answer::FrameAnswer;
 use crate::recorded::Recorded;
 use crate::tracker::{Scratch, Tracker};
 use condyle_math::Vec3;
-use condyle_model::Mode;
 
 /// So many frames, evenly spread, are looked at, and so many solved again.
 const LOOKED_AT: usize = 64;
@@ -39,10 +38,9 @@ pub fn exchanged_throughout(
     let mut seen = vec![];
     for frame in (0..frames).step_by(every).filter(|&f| answers[f].status.is_solved()) {
         Corrected { recorded, repairs }.positions(frame, &mut seen);
-        let pose = &mut scratch.buffers.pose;
-        if tracker.program.evaluate(&answers[frame].coordinates, Mode::Open, pose).is_err() {
+        let Some(pose) = scratch.buffers.pose_at(tracker, &answers[frame].coordinates) else {
             continue;
-        }
+        };
         for (label, seen) in seen.iter().enumerate().take(count) {
             let Some(seen) = *seen else { continue };
             n[label] += 1.0;

@@ -6,7 +6,6 @@ use crate::answer::{FrameAnswer, FrameStatus, better};
 use crate::sequence::FIRST_GUESSES;
 use crate::tracker::Scratch;
 use condyle_math::Vec3;
-use condyle_model::Mode;
 
 /// A label this share of its gate from where its marker is expected is looked at.
 const LOOK: f64 = 0.75;
@@ -227,8 +226,7 @@ impl<'a> Search<'a> {
         }
         let row = trial.row(frame);
         let answer = trial.tracker.solve_first(self.scratch, row, frame, FIRST_GUESSES);
-        let pose = &mut self.scratch.buffers.pose;
-        trial.tracker.program.evaluate(&answer.coordinates, Mode::Open, pose).ok()?;
+        self.scratch.buffers.pose_at(trial.tracker, &answer.coordinates)?;
         trial.place_beside(self.scratch, &mut self.places);
         let cost = trial.cost(frame, None, &self.places, &answer);
         let enough = found.cost + trial.needed(frame, found.source.as_ref(), found.cost);
@@ -249,10 +247,8 @@ impl<'a> Search<'a> {
         let trial = &mut self.trial;
         for frame in 0..trial.frames {
             let Some(plain) = trial.plain[frame].take() else { continue };
-            let pose = &mut self.scratch.buffers.pose;
-            let evaluated = trial.tracker.program.evaluate(&plain.coordinates, Mode::Open, pose);
             let Some(source) = &trial.sources[frame] else { continue };
-            if evaluated.is_err() {
+            if self.scratch.buffers.pose_at(trial.tracker, &plain.coordinates).is_none() {
                 continue;
             }
             trial.place_beside(self.scratch, &mut self.places);

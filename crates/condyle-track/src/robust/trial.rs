@@ -6,7 +6,6 @@ use crate::answer::{FrameAnswer, FrameStatus};
 use crate::recorded::Recorded;
 use crate::tracker::{Scratch, Tracker};
 use condyle_math::Vec3;
-use condyle_model::Mode;
 
 /// The gate of a label that did not move at all is this share of what it is else: noise alone moves a
 /// marker, so it is hardly one.
@@ -125,11 +124,8 @@ impl<'a> Trial<'a> {
 
     /// Measures those of one frame.
     pub(super) fn measure_frame(&mut self, scratch: &mut Scratch, frame: usize) {
-        let pose = &mut scratch.buffers.pose;
         let coordinates = &self.answers[frame].coordinates;
-        if self.tracker.program.evaluate(coordinates, Mode::Open, pose).is_err() {
-            return;
-        }
+        let Some(pose) = scratch.buffers.pose_at(self.tracker, coordinates) else { return };
         for (marker, placed) in self.tracker.markers.placed.iter().enumerate() {
             let at = frame * self.count + marker;
             let label = self.label(frame, marker);

@@ -1,14 +1,16 @@
 //! Markers that should be where the recording has them: `w |e|²`, divided by the sum of weights seen.
 //!
-//! The markers of a rigid segment are summed into second [moments](super::moments) first; those of one
-//! that deforms are taken one by one.
+//! The markers of a rigid segment are summed into second [moments](super::moments) first, and these over
+//! all segments that a [pair](super::pairs) of motions moves; those of one that deforms are taken one by
+//! one.
 
 use super::Target;
-use super::moments::{Moments, pair};
+use super::moments::Moments;
+use super::pairs::Pairs;
 use crate::problem::{Buffers, Frame};
 use crate::tracker::FIXED;
 use condyle_math::Vec3;
-use condyle_model::{Jacobian, Model, Pose, Program, SegmentId};
+use condyle_model::{Model, Pose, Program, SegmentId};
 use condyle_solve::least_squares::LocalModel;
 
 /// One marker of the model that should be where the recording has it.
@@ -64,7 +66,7 @@ pub(crate) struct Group {
     /// (unknown, twist), sorted by unknown.
     pub entries: Vec<(u32, u32)>,
     /// Whether the segment hangs below a scale or a shear, where moments do not add up.
-    deforms: bool,
+    pub deforms: bool,
 }
 
 /// The marker targets, laid out by segment.
@@ -72,6 +74,7 @@ pub(crate) struct Group {
 pub(crate) struct Markers {
     pub placed: Vec<Placed>,
     pub groups: Vec<Group>,
+    pub pairs: Pairs,
 }
 
 impl Markers {
@@ -104,7 +107,8 @@ impl Markers {
             Placed { weight: target.weight, point, segment, group }
         };
         let placed = targets.iter().map(&mut place).collect();
-        Self { placed, groups }
+        let pairs = Pairs::new(&groups, unknowns.iter().filter(|&&u| u != FIXED).count());
+        Self { placed, groups, pairs }
     }
 }
 
@@ -124,9 +128,8 @@ impl Target for Markers {
     }
 
     fn linearise(&self, frame: &mut Frame<'_>, local: &mut LocalModel) {
-        let n = frame.tracker.unknown_len();
         let scale = 2.0 * frame.marker_scale();
-        let Buffers { jacobian, weights, points, errors, moments, levers, .. } =
+        let Buffers { jacobian, weights, points, errors, moments, summed, .. } =
             &mut *frame.buffers;
         moments.fill(Moments::ZERO);
         for (i, marker) in self.placed.iter().enumerate() {
@@ -136,62 +139,15 @@ impl Target for Markers {
                 moments[group].add(weights[i], points[i], errors[i]);
             }
         }
-        for (group, moments) in self.groups.iter().zip(&*moments) {
-            if group.deforms {
-                continue;
-            }
-            for (position, &(row, twist)) in group.entries.iter().enumerate() {
-                let twist = jacobian.twist(twist);
-                let (force, torque) = moments.momentum(twist);
-                let momentum = (force * scale, torque * scale);
-                local.gradient[row as usize] += scale * moments.power(twist);
-                let line = &mut local.hessian[row as usize * n..(row as usize + 1) * n];
-                for &(column, other) in &group.entries[..=position] {
-                    line[column as usize] += pair(jacobian.twist(other), momentum);
-                }
-            }
-            if local.curved {
-                levers.clear();
-                let twists = group.entries.iter().map(|&(_, twist)| jacobian.twist(twist));
-                levers.extend(twists.map(|twist| moments.lever(twist) * scale));
-                add_curvature(group, jacobian, levers, &mut local.hessian, n);
-            }
-        }
+        self.pairs.add(jacobian, moments, summed, scale, local);
         self.add_deforming(frame, local, scale);
-    }
-}
-
-/// Adds what the errors contribute to the second derivative: ω of the earlier motion times the lever of
-/// the later one.
-///
-/// Twists are numbered along the chain. Where one coordinate moves several joints of a path, or several
-/// alternate along it, this order is not exact; what is wrong then is the power of the errors along a
-/// commutator of two motions, which vanishes at the minimum where the commutator is itself a motion of the
-/// model. The curvature of functions of a coordinate is left out.
-fn add_curvature(
-    group: &Group,
-    jacobian: &Jacobian,
-    levers: &[Vec3],
-    hessian: &mut [f64],
-    n: usize,
-) {
-    for (position, &(row, twist)) in group.entries.iter().enumerate() {
-        let spin = jacobian.twist(twist).angular;
-        let line = &mut hessian[row as usize * n..(row as usize + 1) * n];
-        let before = &group.entries[..=position];
-        for (&(column, other), &lever) in before.iter().zip(levers) {
-            line[column as usize] += match other < twist {
-                true => jacobian.twist(other).angular.dot(levers[position]),
-                false => spin.dot(lever),
-            };
-        }
     }
 }
 
 impl Markers {
     /// Markers of segments below a scale or a shear, one by one.
     fn add_deforming(&self, frame: &Frame<'_>, local: &mut LocalModel, scale: f64) {
-        let (program, buffers) = (&frame.tracker.program, &*frame.buffers);
+        let (program, buffers) = (&frame.tracker.part, &*frame.buffers);
         let n = frame.tracker.unknown_len();
         for (i, marker) in self.placed.iter().enumerate() {
             let Some(group) = marker.group.map(|group| &self.groups[group]) else { continue };

@@ -28,6 +28,7 @@ mod coordinate;
 mod marker;
 mod moments;
 mod orientation;
+mod pairs;
 mod posture;
 mod prior;
 #[cfg(test)]
@@ -43,7 +44,8 @@ pub use prior::PRIOR;
 
 use crate::problem::Frame;
 use crate::tracker::Tracker;
-use condyle_model::{CoordinateId, CoordinateKind, Model, Program};
+use condyle_model::model::Condition;
+use condyle_model::{CoordinateId, CoordinateKind, Model, Program, SegmentId};
 use condyle_solve::least_squares::LocalModel;
 
 /// All that is tracked.
@@ -172,6 +174,18 @@ impl Targets {
         !(self.coordinates.is_empty() && self.orientations.is_empty())
     }
 
+    /// The segments that carry what is tracked.
+    pub(crate) fn segments(&self, model: &Model) -> Vec<SegmentId> {
+        let markers = self.markers.iter().filter_map(|t| model.markers().get(t.marker)?.segment);
+        let closed = model.closures().iter().flat_map(|closure| match &closure.condition {
+            Condition::Points { at } | Condition::Distance { at, .. } => at.map(|(s, _)| s),
+            Condition::Frames { at } => at.map(|(s, _)| s),
+            Condition::Coupling { .. } => [None; 2],
+        });
+        let oriented = self.orientations.iter().map(|t| t.segment);
+        markers.chain(oriented).chain(closed.flatten()).collect()
+    }
+
     /// For each direction whether something is tracked that it moves. The rest of a single coordinate does
     /// not count; loops may tie anything to anything.
     pub(crate) fn directions(
@@ -222,7 +236,7 @@ fn add_square(
     let n = tracker.unknown_len();
     let slopes = || {
         terms.iter().flat_map(|&(id, factor)| {
-            let entries = tracker.program.coordinate_directions(&tracker.model, id).iter();
+            let entries = tracker.part.coordinate_directions(&tracker.model, id).iter();
             entries.map(move |&(direction, slot)| {
                 let unknown = tracker.unknowns[direction as usize] as usize;
                 (unknown, factor * frame.buffers.jacobian.derivative(slot))

@@ -49,6 +49,16 @@ impl Moments {
         }
     }
 
+    /// Adds the markers of another segment.
+    #[inline]
+    pub(crate) fn join(&mut self, other: &Self) {
+        self.mass += other.mass;
+        self.first += other.first;
+        self.second.iter_mut().zip(other.second).for_each(|(sum, x)| *sum += x);
+        self.force += other.force;
+        self.cross.iter_mut().zip(other.cross).for_each(|(sum, x)| *sum += x);
+    }
+
     /// `I t`, as a wrench: force and torque.
     #[inline]
     pub(crate) fn momentum(&self, t: Twist) -> (Vec3, Vec3) {

@@ -82,7 +82,7 @@ impl Target for Vec<OrientationTarget> {
         let n = tracker.unknown_len();
         for target in self {
             let Some(off) = target.off(frame) else { continue };
-            let entries = tracker.program.segment_directions(target.segment).iter();
+            let entries = tracker.part.segment_directions(target.segment).iter();
             let spins = || {
                 entries.clone().filter_map(|&(direction, twist)| {
                     let unknown = tracker.unknowns[direction as usize] as usize;

@@ -115,8 +115,8 @@ fn of_kind(
     let mut scratch = Scratch::new(tracker);
     let buffers = &mut scratch.buffers;
     let (pose, jacobian) = (&mut buffers.pose, &mut buffers.jacobian);
-    tracker.program.evaluate_with_jacobian(stored, pose, jacobian).unwrap();
-    buffers.closures.update(&tracker.model, &tracker.program, pose, Some(jacobian));
+    tracker.part.evaluate_with_jacobian(stored, pose, jacobian).unwrap();
+    buffers.closures.update(&tracker.model, &tracker.part, pose, Some(jacobian));
     let mut frame = Frame { tracker, seen, index: 0, buffers };
     frame.weigh();
     let mut local = scratch.solver.local().clone();

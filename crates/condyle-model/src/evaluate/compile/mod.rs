@@ -7,7 +7,9 @@ use super::derivative_plan::{DerivativePlan, plan};
 use super::instruction::{Code, Instruction};
 use super::program::Program;
 use crate::component::{Component, Signal, Swinging};
-use crate::model::{ComponentId, CoordinateId, CoordinateKind, Model, Node, dependency_order};
+use crate::model::{
+    ComponentId, CoordinateId, CoordinateKind, Model, Node, SegmentId, dependency_order,
+};
 use std::collections::HashMap;
 
 /// The compiled form of a source: a constant or a register.
@@ -40,12 +42,57 @@ struct Compiler<'m> {
 impl Program {
     /// Compiles a model. Models are checked when they are built, so this cannot fail.
     pub fn compile(model: &Model) -> Self {
-        compile(model)
+        compile(model, &vec![true; model.segments.len()], &vec![true; model.tangent_len()])
+    }
+
+    /// Compiles what some segments need, with derivatives along some directions.
+    ///
+    /// The transforms of these segments, the coordinates and the limit rows are those of
+    /// [`Program::compile`], to the bit; other segments stay at the identity, where their ancestors are
+    /// not asked for either, and have no directions. `moving` has one entry for each direction of the
+    /// model; those of an orientation must be alike.
+    ///
+    /// # Panics
+    ///
+    /// If `moving` is shorter than [`Model::tangent_len`].
+    ///
+    /// ```
+    /// use condyle_math::Vec3;
+    /// use condyle_model::{Mode, ModelBuilder, Pose, Program};
+    ///
+    /// let mut builder = ModelBuilder::new("arm");
+    /// let humerus = builder.segment("humerus", None);
+    /// builder.hinge("shoulder", humerus, "elevation", Vec3::Z);
+    /// let hand = builder.segment("hand", Some(humerus));
+    /// builder.hinge("wrist", hand, "flexion", Vec3::Z);
+    /// let model = builder.build().unwrap();
+    ///
+    /// let upper_arm = Program::compile_for(&model, [humerus], &[true; 2]);
+    /// let mut pose = Pose::new(&upper_arm);
+    /// upper_arm.evaluate(&[0.5, 0.25], Mode::Open, &mut pose).unwrap();
+    /// assert_eq!(pose.segment(humerus).linear.x.y, 0.5_f64.sin());
+    /// assert_eq!(pose.segment(hand).linear.x.y, 0.0); // not computed
+    /// ```
+    pub fn compile_for(
+        model: &Model,
+        segments: impl IntoIterator<Item = SegmentId>,
+        moving: &[bool],
+    ) -> Self {
+        let mut wanted = vec![false; model.segments.len()];
+        for segment in segments {
+            let mut here = Some(segment);
+            while let Some(id) = here
+                && !std::mem::replace(&mut wanted[id.index()], true)
+            {
+                here = model.segment(id).parent;
+            }
+        }
+        compile(model, &wanted, moving)
     }
 }
 
-/// Compiles a model.
-fn compile(model: &Model) -> Program {
+/// Compiles a model with its `wanted` segments, which include their ancestors.
+fn compile(model: &Model, wanted: &[bool], moving: &[bool]) -> Program {
     // A built model has no dependency cycle, so the default, an empty order, is never used.
     let order = dependency_order(model).unwrap_or_default();
     let components = model.components.len();
@@ -89,7 +136,7 @@ fn compile(model: &Model) -> Program {
         needed: vec![false; components],
         effective: HashMap::new(),
     };
-    compiler.mark_needed(&order);
+    compiler.mark_needed(&order, wanted);
     compiler.limits();
     compiler.find_effective(&order);
     for node in order {
@@ -97,7 +144,9 @@ fn compile(model: &Model) -> Program {
     }
     compiler.follower_rows();
     for segment in model.parents_first() {
-        compiler.segment(segment);
+        if wanted[segment.index()] {
+            compiler.segment(segment);
+        }
     }
     // Operand instructions read scalars only, so all of them can run first. The sort is stable.
     let code = &mut compiler.program.code;
@@ -106,6 +155,7 @@ fn compile(model: &Model) -> Program {
     let directions: Vec<(u32, u32)> = model
         .coordinate_ids()
         .filter(|&id| model.coordinate(id).follows.is_none())
+        .filter(|&id| moving[model.tangent_range(id).start])
         .filter_map(|id| match compiler.coordinates[id.index()] {
             Operand::Register(register) => Some((register, model.tangent_range(id).start as u32)),
             Operand::Constant(_) => None,
@@ -117,30 +167,49 @@ fn compile(model: &Model) -> Program {
 }
 
 impl Compiler<'_> {
-    /// Marks the components that segments and coordinates depend on, directly or not; the others
-    /// are not compiled.
-    fn mark_needed(&mut self, order: &[Node]) {
-        let roots = self.model.segments.iter().filter_map(|s| s.motion);
-        let roots = roots.chain(self.model.coordinates.iter().filter_map(|c| c.follows));
-        for source in roots {
+    /// Marks the components that wanted segments, coordinates and limits depend on, directly or not; the
+    /// others are not compiled.
+    fn mark_needed(&mut self, order: &[Node], wanted: &[bool]) {
+        let model = self.model;
+        let motion = |segment: usize| model.segments[segment].motion;
+        let followed = || model.coordinates.iter().filter_map(|c| c.follows);
+        let all = (0..wanted.len()).filter_map(motion).chain(followed());
+        // Whether a transform has several readers does not depend on what is wanted.
+        let (of_model, readers) = self.reached(order, all);
+        self.readers = readers;
+        let limits = model.component_ids().filter(|id| {
+            let component = &model.components[id.index()].component;
+            of_model[id.index()] && matches!(component, Component::Depend(_) | Component::Cone(_))
+        });
+        let wanted = (0..wanted.len()).filter(|&segment| wanted[segment]).filter_map(motion);
+        let limits = limits.map(|id| Signal::Output(id, 0));
+        self.needed = self.reached(order, wanted.chain(followed()).chain(limits)).0;
+    }
+
+    /// The components that sources depend on, directly or not, and the number of readers of each.
+    fn reached(
+        &self,
+        order: &[Node],
+        sources: impl Iterator<Item = Signal>,
+    ) -> (Vec<bool>, Vec<usize>) {
+        let components = self.model.components.len();
+        let (mut reached, mut readers) = (vec![false; components], vec![0; components]);
+        let mut read = |source: Signal, reached: &mut Vec<bool>| {
             if let Signal::Output(id, _) = source {
-                self.needed[id.index()] = true;
-                self.readers[id.index()] += 1;
+                reached[id.index()] = true;
+                readers[id.index()] += 1;
             }
-        }
+        };
+        sources.for_each(|source| read(source, &mut reached));
         // Readers come after what they read: in reverse order one pass is enough.
         for node in order.iter().rev() {
-            let Node::Component(id) = *node else { continue };
-            if !self.needed[id.index()] {
-                continue;
-            }
-            for source in self.model.reads(id) {
-                if let Signal::Output(input, _) = source {
-                    self.needed[input.index()] = true;
-                    self.readers[input.index()] += 1;
-                }
+            if let Node::Component(id) = *node
+                && reached[id.index()]
+            {
+                self.model.reads(id).into_iter().for_each(|source| read(source, &mut reached));
             }
         }
+        (reached, readers)
     }
 
     /// Finds the coordinates that limit components hold. If several limits act on a coordinate one
