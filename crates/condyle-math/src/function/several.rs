@@ -1,6 +1,6 @@
 //! Functions of several scalars.
 
-use crate::Scalar;
+use crate::{Dual, Scalar};
 
 /// A scalar function of several scalars, such as the angle of a vertebra as a function of three
 /// trunk angles.
@@ -39,7 +39,30 @@ impl FunctionOfSeveral {
             Self::Polynomial(p) => p.apply(x),
         }
     }
+
+    /// The partial derivative at `x` by argument `i`; 0 for an argument that it does not have.
+    ///
+    /// ```
+    /// use condyle_math::function::FunctionOfSeveral;
+    /// let sum = FunctionOfSeveral::Linear { slopes: vec![0.5, 2.0], intercept: 1.0 };
+    /// assert_eq!(sum.slope(&[3.0, 4.0], 1), 2.0);
+    /// ```
+    pub fn slope(&self, x: &[f64], i: usize) -> f64 {
+        match self {
+            Self::Linear { slopes, .. } => slopes.get(i).copied().unwrap_or(0.0),
+            Self::Polynomial(p) => {
+                let mut seeded = [Dual::<1>::constant(0.0); MOST_VARIABLES];
+                for (k, (dual, &value)) in seeded.iter_mut().zip(x).enumerate() {
+                    *dual = Dual { value, partials: [f64::from(u8::from(k == i))] };
+                }
+                p.apply(&seeded[..x.len().min(MOST_VARIABLES)]).partials[0]
+            }
+        }
+    }
 }
+
+/// The most variables of a polynomial.
+const MOST_VARIABLES: usize = 16;
 
 /// A polynomial of several variables: a sum of terms `c · Π xᵢ^eᵢ`.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,7 +103,7 @@ impl MultivariatePolynomial {
             count = count.saturating_mul(dimension.saturating_add(k)) / k;
         }
         if dimension == 0
-            || dimension > 16
+            || dimension > MOST_VARIABLES
             || order > 64
             || count > 1_000_000
             || coefficients.len() > count

@@ -9,7 +9,7 @@ use super::program::{Mode, Program, SizeMismatch};
 use super::tape::Tape;
 use crate::component::MOST_COMBINED;
 use crate::model::SegmentId;
-use condyle_math::{Affine, Dual, Mat3, Quat, Twist, Vec3};
+use condyle_math::{Affine, Mat3, Quat, Twist, Vec3};
 
 /// The generators of one evaluation, expressed in the world.
 ///
@@ -195,18 +195,13 @@ impl Program {
             Instruction::Combine { function, output } => {
                 let call = &self.code.combines[function as usize];
                 let n = call.inputs.len();
-                let mut values = [Dual::<1>::constant(0.0); MOST_COMBINED];
+                let mut values = [0.0; MOST_COMBINED];
                 for (value, &input) in values.iter_mut().zip(&call.inputs) {
-                    value.value = pose.scalars[input as usize];
+                    *value = pose.scalars[input as usize];
                 }
-                pose.scalars[output as usize] = finite(call.function.apply(&values[..n]).value);
-                // One partial derivative at a time, each seeded and cleared again.
-                for term in terms {
-                    let i = term.slope as usize;
-                    values[i].partials[0] = 1.0;
-                    add(term, call.function.apply(&values[..n]).partials[0]);
-                    values[i].partials[0] = 0.0;
-                }
+                let values = &values[..n];
+                pose.scalars[output as usize] = finite(call.function.apply(values));
+                terms.iter().for_each(|t| add(t, call.function.slope(values, t.slope as usize)));
             }
             Instruction::Hold { passive, output, .. } => {
                 pose.scalars[output as usize] = pose.scalars[passive as usize];
