@@ -1,15 +1,18 @@
 //! Evaluation of a chain: the product of its elementary steps.
 
-use super::instruction::{Code, Step};
+use super::instruction::{Code, Frame, Step};
 use super::pose::Pose;
 use crate::component::{Law, MOST_LAW_INPUTS, shear};
 use condyle_math::{Affine, Mat3, Quat, Scalar, Twist, Vec3};
+use std::ops::Range;
 
 /// An observer that is called for every elementary motion of a chain, to record its generator.
 ///
 /// Twists are expressed in the base frame of the chain (the world, for segments), per unit of the
 /// scalar that drives the motion.
 pub(super) trait Recorder<S> {
+    /// The step at this position in [`Code::steps`] begins.
+    fn begin(&mut self, step: usize);
     /// A rotation or translation by one scalar in `frame`, whose twist is `inside` expressed in
     /// `frame` and `outside` expressed in the base; the latter only if `frame` is rigid.
     fn motion(
@@ -23,15 +26,17 @@ pub(super) trait Recorder<S> {
     /// A smooth law; `before` is the frame before it is multiplied.
     fn law(&mut self, code: &Code, law: u32, before: Affine<S>);
     /// A transform computed by an earlier instruction; `before` is the frame before it.
-    fn transform(&mut self, register: u32, before: Affine<S>);
+    fn transform(&mut self, of: Frame, before: Affine<S>);
     /// A power of the rotation of an earlier transform; `before` is the frame before it.
-    fn power(&mut self, register: u32, exponent: f64, rotation: Mat3<S>, before: Affine<S>);
+    fn power(&mut self, of: Frame, exponent: f64, rotation: Mat3<S>, before: Affine<S>);
 }
 
 /// The observer that records nothing, for evaluation without derivatives.
 pub(super) struct Silent;
 
 impl<S> Recorder<S> for Silent {
+    #[inline(always)]
+    fn begin(&mut self, _: usize) {}
     #[inline(always)]
     fn motion(&mut self, _: Affine<S>, _: impl FnOnce() -> Twist<S>, _: impl FnOnce() -> Twist<S>) {
     }
@@ -40,9 +45,9 @@ impl<S> Recorder<S> for Silent {
     #[inline(always)]
     fn law(&mut self, _: &Code, _: u32, _: Affine<S>) {}
     #[inline(always)]
-    fn transform(&mut self, _: u32, _: Affine<S>) {}
+    fn transform(&mut self, _: Frame, _: Affine<S>) {}
     #[inline(always)]
-    fn power(&mut self, _: u32, _: f64, _: Mat3<S>, _: Affine<S>) {}
+    fn power(&mut self, _: Frame, _: f64, _: Mat3<S>, _: Affine<S>) {}
 }
 
 /// A rotation raised to a power p: exp(p·log R), without logarithm for 1, 0 and -1.
@@ -60,13 +65,15 @@ pub(super) fn power<S: Scalar>(rotation: Mat3<S>, exponent: f64) -> Mat3<S> {
 #[inline(always)]
 pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
     code: &Code,
-    steps: &[Step],
+    steps: Range<u32>,
     base: Affine<S>,
     pose: &Pose<S>,
     recorder: &mut R,
 ) -> Affine<S> {
     let mut frame = base;
-    for step in steps {
+    let steps = steps.start as usize..steps.end as usize;
+    for (position, step) in steps.clone().zip(&code.steps[steps]) {
+        recorder.begin(position);
         let (r, origin) = (frame.linear, frame.translation);
         match *step {
             Step::Shift(offset) => frame = frame.shifted(offset.cast()),
@@ -87,7 +94,7 @@ pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
                 recorder.motion(frame, inside, || Twist::rotation(r.z, origin));
                 frame.linear = r.rotated_z(pose.turn(turn));
             }
-            Step::Turn { axis, turn } => {
+            Step::TurnAbout { axis, turn } => {
                 let axis: Vec3<S> = axis.cast();
                 let inside = || Twist::rotation(axis, Vec3::zero());
                 recorder.motion(frame, inside, || Twist::rotation(r * axis, origin));
@@ -98,20 +105,19 @@ pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
                 let along = r * axis.cast();
                 let inside = || Twist::translation(axis.cast());
                 recorder.motion(frame, inside, || Twist::translation(along));
-                frame.translation = origin + along * pose.scalars[distance as usize];
+                frame.translation = origin + along * pose.scalars[distance.index()];
             }
             Step::Move(distances) => {
                 for (unit, along) in Vec3::UNITS.into_iter().zip([r.x, r.y, r.z]) {
                     let inside = || Twist::translation(unit.cast());
                     recorder.motion(frame, inside, || Twist::translation(along));
                 }
-                let [x, y, z] = distances.map(|distance| pose.scalars[distance as usize]);
+                let [x, y, z] = distances.map(|distance| pose.scalars[distance.index()]);
                 frame = frame.shifted(Vec3::new(x, y, z));
             }
             Step::Ball(orientation) => {
-                let q = orientation as usize;
-                let q: &[S; 4] = pose.scalars[q..].first_chunk().expect("four registers");
-                frame.linear = r * Quat::from(*q).to_mat3();
+                let q = orientation.quaternion(&pose.scalars);
+                frame.linear = r * Quat::from(q).to_mat3();
                 // q ⊕ δ = q·exp(δ): the three directions rotate about the axes *after* the
                 // rotation.
                 let turned = frame.linear;
@@ -120,9 +126,9 @@ pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
                     recorder.motion(frame, inside, || Twist::rotation(axis, origin));
                 }
             }
-            Step::Transform(register) => {
-                recorder.transform(register, frame);
-                frame = frame * pose.transforms[register as usize];
+            Step::Transform(of) => {
+                recorder.transform(of, frame);
+                frame = frame * pose.transforms[of.index()];
             }
             _ => frame = rare_step(code, *step, frame, pose, recorder),
         }
@@ -143,13 +149,13 @@ fn rare_step<S: Scalar, R: Recorder<S>>(
     match step {
         Step::Stretch { along, factor } => {
             // The rate M′·M⁻¹ is expressed in the frame before the scale, as is that of a shear.
-            let (along, factor) = (code.scales[along as usize], scalars[factor as usize]);
+            let (along, factor) = (code.scales[along as usize], scalars[factor.index()]);
             recorder.deformation(frame, || along.rate(factor.value()));
             frame.linear = r * along.matrix(factor);
         }
         Step::Shear { directions, amount } => {
             let [along, across] = code.shears[directions as usize];
-            let amount = scalars[amount as usize];
+            let amount = scalars[amount.index()];
             recorder.deformation(frame, || shear::rate(along, across, amount.value()));
             frame.linear = r * shear::matrix(along, across, amount);
         }
@@ -158,13 +164,13 @@ fn rare_step<S: Scalar, R: Recorder<S>>(
             let call = &code.laws[index as usize];
             let mut inputs = [S::zero(); MOST_LAW_INPUTS];
             for (value, &register) in inputs.iter_mut().zip(&call.inputs) {
-                *value = scalars[register as usize];
+                *value = scalars[register.index()];
             }
             frame = frame * call.law.transform(&inputs[..call.inputs.len()]);
         }
         Step::Power { of, exponent } => {
             // The rotation only, about the origin of the current frame.
-            let rotation = pose.transforms[of as usize].linear;
+            let rotation = pose.transforms[of.index()].linear;
             recorder.power(of, exponent, rotation, frame);
             frame.linear = r * power(rotation, exponent);
         }

@@ -3,11 +3,12 @@
 //!
 //! The plan walks the instructions in the order in which they run. For every scalar it records
 //! which directions (tangents of the coordinates) it depends on, with a slot for each derivative;
-//! for every transform which directions move it, with the index of each twist. Evaluation then
-//! reads the terms in sequence, without a search.
+//! for every transform which directions move it, with the index of each twist. Each instruction and each
+//! step of a chain has its own terms, which evaluation reads without a search.
 
-use super::instruction::{Code, Instruction, NO_BASE, Step};
+use super::instruction::{Code, Driver, Frame, Instruction, Number};
 use crate::component::Swinging;
+use std::ops::Range;
 
 /// The initial value of the sum to which a term is added.
 #[derive(Clone, Copy, Debug)]
@@ -45,14 +46,15 @@ pub(super) struct DerivativePlan {
     pub tangents: usize,
     pub twists: usize,
     pub derivatives: usize,
-    /// For each unit motion in the order in which chains run, the number of its terms.
-    pub term_counts: Vec<u32>,
-    pub terms: Vec<Term>,
-    /// For each scalar instruction in order, the number of its terms.
-    pub scalar_counts: Vec<u32>,
-    pub scalar_terms: Vec<ScalarTerm>,
-    /// The number of scalar terms of completed instructions.
-    ended: u32,
+    /// For each step of chains, and for each instruction, its first unit motion.
+    pub step_units: Vec<u32>,
+    pub instruction_units: Vec<u32>,
+    /// For each unit motion where its terms begin; one entry more than there are.
+    unit_offsets: Vec<u32>,
+    terms: Vec<Term>,
+    /// For each instruction where its scalar terms begin; one entry more than there are.
+    scalar_offsets: Vec<u32>,
+    scalar_terms: Vec<ScalarTerm>,
     /// The (direction, twist) pairs of all transform registers, sorted by direction within each;
     /// register i has those from `entry_offsets[i]` up to `entry_offsets[i + 1]`.
     entries: Vec<(u32, u32)>,
@@ -63,29 +65,34 @@ pub(super) struct DerivativePlan {
     row_entries: Vec<Vec<(u32, u32)>>,
     /// For each transform register whether it is not rigid.
     pub deforming: Vec<bool>,
-    /// For each twist the slot of its strain, or [`RIGID`]; twists beyond its end have none.
-    strain_slots: Vec<u32>,
+    /// For each twist the slot of its strain, if it has one; twists beyond its end have none.
+    strain_slots: Vec<Option<u32>>,
     pub strains: usize,
 }
 
-/// Marks a twist without a strain.
-pub(super) const RIGID: u32 = u32::MAX;
-
 impl DerivativePlan {
-    /// The directions that move a segment, with their twists.
+    /// The directions that move a transform, with their twists.
     #[inline]
-    pub(super) fn segment_entries(&self, register: usize) -> &[(u32, u32)] {
-        let [from, to] = [register, register + 1].map(|i| self.entry_offsets[i] as usize);
-        &self.entries[from..to]
+    pub(super) fn frame_entries(&self, frame: Frame) -> &[(u32, u32)] {
+        &self.entries[between(&self.entry_offsets, frame.index())]
+    }
+
+    /// The terms of a unit motion.
+    #[inline(always)]
+    pub(super) fn unit_terms(&self, unit: usize) -> &[Term] {
+        &self.terms[between(&self.unit_offsets, unit)]
+    }
+
+    /// The terms of the scalars that an instruction computes.
+    #[inline(always)]
+    pub(super) fn scalar_terms(&self, instruction: usize) -> &[ScalarTerm] {
+        &self.scalar_terms[between(&self.scalar_offsets, instruction)]
     }
 
     /// The slot of a twist's strain, if it has one.
     #[inline(always)]
     pub(super) fn strain_slot(&self, twist: u32) -> Option<usize> {
-        match self.strain_slots.get(twist as usize) {
-            Some(&slot) if slot != RIGID => Some(slot as usize),
-            _ => None,
-        }
+        self.strain_slots.get(twist as usize).copied().flatten().map(|slot| slot as usize)
     }
 
     /// The directions that move a limit row, with the slots of its derivatives.
@@ -99,6 +106,11 @@ impl DerivativePlan {
     }
 }
 
+#[inline(always)]
+fn between(offsets: &[u32], i: usize) -> Range<usize> {
+    offsets[i] as usize..offsets[i + 1] as usize
+}
+
 /// Plans the derivatives of the instructions of a program, in their final order.
 ///
 /// `directions` gives the register of each free coordinate (the first one of an orientation) with its
@@ -107,131 +119,104 @@ pub(super) fn plan(
     code: &Code,
     stored: usize,
     tangents: usize,
-    directions: &[(u32, u32)],
+    directions: &[(Number, u32)],
 ) -> DerivativePlan {
     // One derivative from the start: slot 0, the constant 1.
     let mut plan = DerivativePlan {
         tangents,
         derivatives: 1,
         deforming: vec![false; code.transforms],
+        step_units: vec![0; code.steps.len()],
+        unit_offsets: vec![0],
         ..Default::default()
     };
     // (direction, slot) of every scalar register.
     let mut scalars: Vec<Vec<(u32, u32)>> = vec![vec![]; code.scalars];
     // A free coordinate has the derivative 1 in its own direction: slot 0.
     for &(register, direction) in directions {
-        scalars[register as usize].push((direction, 0));
+        scalars[register.index()].push((direction, 0));
     }
     let mut transforms: Vec<Vec<(u32, u32)>> = vec![vec![]; code.transforms];
-    let one = [0u32];
     for instruction in &code.instructions {
+        plan.scalar_offsets.push(plan.scalar_terms.len() as u32);
+        plan.instruction_units.push(plan.next_unit());
         match instruction {
             Instruction::Function { input, output, .. } => {
-                let inputs = [scalars[*input as usize].clone()];
-                scalars[*output as usize] = plan.scalar(0, &inputs);
-                plan.end_scalar();
+                scalars[output.index()] = plan.scalar(0, &[scalars[input.index()].clone()]);
             }
             Instruction::Hold { passive, output, .. } => {
                 // Derivatives are those of open mode, where the value passes unchanged.
-                let inputs = [scalars[*passive as usize].clone()];
-                scalars[*output as usize] = plan.scalar(0, &inputs);
-                plan.end_scalar();
+                scalars[output.index()] = plan.scalar(0, &[scalars[passive.index()].clone()]);
             }
             Instruction::Combine { function, output } => {
                 let inputs = &code.combines[*function as usize].inputs;
-                let inputs: Vec<_> = inputs.iter().map(|&r| scalars[r as usize].clone()).collect();
-                scalars[*output as usize] = plan.scalar(0, &inputs);
-                plan.end_scalar();
+                let inputs: Vec<_> = inputs.iter().map(|&r| scalars[r.index()].clone()).collect();
+                scalars[output.index()] = plan.scalar(0, &inputs);
             }
             Instruction::Cone { cone } => {
                 let call = &code.cones[*cone as usize];
                 let inputs: Vec<Vec<(u32, u32)>> = match call.component.of {
                     Swinging::Orientation(_) => {
                         // The register of x stands for all four numbers and their three directions.
-                        let first = scalars[call.inputs[0] as usize].clone();
-                        scalars[call.outputs[0] as usize] = first.clone();
+                        let first = scalars[call.inputs[0].index()].clone();
+                        scalars[call.outputs[0].index()] = first.clone();
                         let along = |k| first.iter().map(|&(d, slot)| (d + k, slot)).collect();
                         vec![along(0), along(1), along(2)]
                     }
                     _ => {
-                        let read = |&r: &u32| scalars[r as usize].clone();
+                        let read = |&r: &Number| scalars[r.index()].clone();
                         let inputs: Vec<_> = call.inputs.iter().map(read).collect();
                         // In open mode the angles pass unchanged: their derivative, at position 0,
                         // is 1.
                         for (input, &output) in inputs.iter().zip(&call.outputs) {
-                            scalars[output as usize] = plan.scalar(0, std::slice::from_ref(input));
+                            scalars[output.index()] = plan.scalar(0, std::slice::from_ref(input));
                         }
                         inputs
                     }
                 };
                 // Three derivatives for each row, after that of the angles.
                 for (row, &register) in call.rows.iter().enumerate() {
-                    scalars[register as usize] = plan.scalar(1 + 3 * row, &inputs);
+                    scalars[register.index()] = plan.scalar(1 + 3 * row, &inputs);
                 }
-                plan.end_scalar();
             }
             Instruction::Contact { contact } => {
-                // The order of the units here and below is that of the calls of `Tape::emit`.
                 let call = &code.contacts[*contact as usize];
                 let mut moving = vec![];
-                for (direction, _) in &transforms[call.frame as usize] {
-                    plan.unit(&mut moving, &[(*direction, 0)]);
+                plan.units(&mut moving, Driver::Frame(call.frame), &scalars, &transforms);
+                for &driver in &call.drivers {
+                    plan.units(&mut moving, Driver::Number(driver), &scalars, &transforms);
                 }
-                for driver in &call.drivers {
-                    plan.unit(&mut moving, &scalars[*driver as usize]);
-                }
-                transforms[call.output as usize] = plan.close(moving, false, call.output);
+                transforms[call.output.index()] = plan.close(moving, false, call.output);
             }
             Instruction::BallAt { base, orientation, output, .. } => {
-                let mut moving = plan.inherit(&transforms, *base);
-                let deforming = plan.deforms(*base);
-                plan.ball(&mut moving, &scalars[*orientation as usize]);
-                transforms[*output as usize] = plan.close(moving, deforming, *output);
+                let mut moving = inherit(&transforms[base.index()]);
+                let deforming = plan.deforming[base.index()];
+                let driver = Driver::Orientation(*orientation);
+                plan.units(&mut moving, driver, &scalars, &transforms);
+                transforms[output.index()] = plan.close(moving, deforming, *output);
             }
             Instruction::Chain { base, first, end, output, .. } => {
-                let mut moving = plan.inherit(&transforms, *base);
-                let mut deforming = plan.deforms(*base);
-                for step in &code.steps[*first as usize..*end as usize] {
-                    // Everything after the first step that is not rigid is not rigid either.
-                    deforming |= !step.is_rigid(code, |register| !plan.deforms(register));
-                    match *step {
-                        Step::Fixed(_) | Step::Shift(_) => {}
-                        Step::TurnX(turn)
-                        | Step::TurnY(turn)
-                        | Step::TurnZ(turn)
-                        | Step::Turn { turn, .. } => {
-                            plan.unit(&mut moving, &scalars[code.turns[turn as usize] as usize]);
+                let mut moving = inherit(&transforms[base.index()]);
+                let mut deforming = plan.deforming[base.index()];
+                for step in *first as usize..*end as usize {
+                    let (drivers, deforms) = code.steps[step].drivers(code);
+                    deforming |= deforms;
+                    plan.step_units[step] = plan.next_unit();
+                    for driver in drivers {
+                        // Everything after the first step that is not rigid is not rigid either.
+                        if let Driver::Frame(frame) = driver {
+                            deforming |= plan.deforming[frame.index()];
                         }
-                        Step::Slide { distance: s, .. }
-                        | Step::Stretch { factor: s, .. }
-                        | Step::Shear { amount: s, .. } => {
-                            plan.unit(&mut moving, &scalars[s as usize]);
-                        }
-                        Step::Move(distances) => {
-                            for distance in distances {
-                                plan.unit(&mut moving, &scalars[distance as usize]);
-                            }
-                        }
-                        Step::Ball(s) => plan.ball(&mut moving, &scalars[s as usize]),
-                        Step::Law(index) => {
-                            for input in &code.laws[index as usize].inputs {
-                                plan.unit(&mut moving, &scalars[*input as usize]);
-                            }
-                        }
-                        // Generators of the earlier transform, each already that of one direction.
-                        Step::Transform(register) | Step::Power { of: register, .. } => {
-                            for (direction, _) in &transforms[register as usize] {
-                                plan.unit(&mut moving, &one.map(|slot| (*direction, slot)));
-                            }
-                        }
+                        plan.units(&mut moving, driver, &scalars, &transforms);
                     }
                 }
-                transforms[*output as usize] = plan.close(moving, deforming, *output);
+                transforms[output.index()] = plan.close(moving, deforming, *output);
             }
         }
     }
+    plan.scalar_offsets.push(plan.scalar_terms.len() as u32);
     plan.coordinate_entries = scalars[..stored].to_vec();
-    plan.row_entries = code.rows.iter().map(|&r| scalars[r as usize].clone()).collect();
+    plan.row_entries = code.rows.iter().map(|&r| scalars[r.index()].clone()).collect();
     plan.entry_offsets.push(0);
     for list in transforms {
         plan.entries.extend(list);
@@ -246,6 +231,11 @@ struct Moving {
     direction: u32,
     twist: u32,
     own: bool,
+}
+
+/// The motions that a chain has from its base.
+fn inherit(base: &[(u32, u32)]) -> Vec<Moving> {
+    base.iter().map(|&(direction, twist)| Moving { direction, twist, own: false }).collect()
 }
 
 impl DerivativePlan {
@@ -271,20 +261,36 @@ impl DerivativePlan {
         made
     }
 
-    /// Ends the terms of a scalar instruction.
-    fn end_scalar(&mut self) {
-        let all = self.scalar_terms.len() as u32;
-        self.scalar_counts.push(all - std::mem::replace(&mut self.ended, all));
+    fn next_unit(&self) -> u32 {
+        self.unit_offsets.len() as u32 - 1
     }
 
-    fn inherit(&self, transforms: &[Vec<(u32, u32)>], base: u32) -> Vec<Moving> {
-        if base == NO_BASE {
-            return vec![];
+    /// Plans the motions of a driver.
+    fn units(
+        &mut self,
+        moving: &mut Vec<Moving>,
+        driver: Driver,
+        scalars: &[Vec<(u32, u32)>],
+        transforms: &[Vec<(u32, u32)>],
+    ) {
+        match driver {
+            Driver::Number(number) => self.unit(moving, &scalars[number.index()]),
+            // The three directions of an orientation are consecutive. A constant one has no
+            // dependencies but still three motions.
+            Driver::Orientation(first) => {
+                let own = scalars[first.index()].first().copied();
+                for axis in 0..3 {
+                    let own = own.map(|(direction, slot)| (direction + axis, slot));
+                    self.unit(moving, own.as_slice());
+                }
+            }
+            // Generators of the earlier transform, each already that of one direction.
+            Driver::Frame(frame) => {
+                for &(direction, _) in &transforms[frame.index()] {
+                    self.unit(moving, &[(direction, 0)]);
+                }
+            }
         }
-        transforms[base as usize]
-            .iter()
-            .map(|&(direction, twist)| Moving { direction, twist, own: false })
-            .collect()
     }
 
     fn unit(&mut self, moving: &mut Vec<Moving>, dependencies: &[(u32, u32)]) {
@@ -308,31 +314,21 @@ impl DerivativePlan {
             };
             self.terms.push(Term { twist, derivative, start });
         }
-        self.term_counts.push(dependencies.len() as u32);
+        self.unit_offsets.push(self.terms.len() as u32);
     }
 
-    fn ball(&mut self, moving: &mut Vec<Moving>, dependencies: &[(u32, u32)]) {
-        // The three directions of an orientation are consecutive. A constant one has no
-        // dependencies but still three units, because the chain records three motions.
-        for axis in 0..3 {
-            match dependencies.first() {
-                Some(&(direction, slot)) => self.unit(moving, &[(direction + axis, slot)]),
-                None => self.unit(moving, &[]),
-            }
-        }
-    }
-
-    fn deforms(&self, register: u32) -> bool {
-        register != NO_BASE && self.deforming[register as usize]
-    }
-
-    fn close(&mut self, mut moving: Vec<Moving>, deforming: bool, output: u32) -> Vec<(u32, u32)> {
-        self.deforming[output as usize] = deforming;
+    fn close(
+        &mut self,
+        mut moving: Vec<Moving>,
+        deforming: bool,
+        output: Frame,
+    ) -> Vec<(u32, u32)> {
+        self.deforming[output.index()] = deforming;
         // Twists shared with the base keep the slots they have, if any.
         if deforming {
-            self.strain_slots.resize(self.twists, RIGID);
+            self.strain_slots.resize(self.twists, None);
             for own in moving.iter().filter(|m| m.own) {
-                self.strain_slots[own.twist as usize] = self.strains as u32;
+                self.strain_slots[own.twist as usize] = Some(self.strains as u32);
                 self.strains += 1;
             }
         }

@@ -1,7 +1,7 @@
 //! Evaluation of a program: transforms from coordinates.
 
 use super::chain::{Silent, run_chain};
-use super::instruction::{Instruction, NO_BASE, NO_BOUND};
+use super::instruction::Instruction;
 use super::pose::Pose;
 use super::program::{Mode, Program, SizeMismatch};
 use crate::component::MOST_COMBINED;
@@ -29,19 +29,18 @@ pub(super) fn finite<S: Scalar>(x: S) -> S {
 fn run_balls<S: Scalar>(balls: &[Instruction], pose: &mut Pose<S>) {
     for ball in balls {
         let Instruction::BallAt { shift, orientation, output, .. } = *ball else { continue };
-        let q = orientation as usize;
-        let q: &[S; 4] = pose.scalars[q..].first_chunk().expect("four registers");
-        pose.transforms[output as usize] = Affine::new(Quat::from(*q).to_mat3(), shift.cast());
+        let q = orientation.quaternion(&pose.scalars);
+        pose.transforms[output.index()] = Affine::new(Quat::from(q).to_mat3(), shift.cast());
     }
     let mut rest = balls.iter().peekable();
     while let Some(Instruction::BallAt { base, .. }) = rest.peek() {
-        let mut frame = pose.transforms[*base as usize];
+        let mut frame = pose.transforms[base.index()];
         let mut last = *base;
         while let Some(&&Instruction::BallAt { base, output, .. }) = rest.peek()
             && base == last
         {
-            frame = frame * pose.transforms[output as usize];
-            pose.transforms[output as usize] = frame;
+            frame = frame * pose.transforms[output.index()];
+            pose.transforms[output.index()] = frame;
             last = output;
             rest.next();
         }
@@ -65,15 +64,22 @@ impl Program {
         pose: &mut Pose<S>,
     ) -> Result<(), SizeMismatch> {
         self.load(requested, mode, pose)?;
-        let (scalars, transforms) = self.code.instructions.split_at(self.code.scalar_instructions);
-        for instruction in scalars {
-            self.run_scalar(instruction, mode, &mut pose.scalars);
+        for stage in &self.code.stages {
+            for instruction in &self.code.instructions[stage.scalars.clone()] {
+                self.run_scalar(instruction, mode, pose);
+            }
+            pose.take_turns(&self.code.turns, stage.turns.clone());
+            self.run_transforms(&self.code.instructions[stage.transforms.clone()], pose);
         }
-        pose.take_turns(&self.code.turns);
+        Ok(())
+    }
+
+    /// Runs instructions that compute transforms.
+    #[inline(always)]
+    fn run_transforms<S: Scalar>(&self, mut rest: &[Instruction], pose: &mut Pose<S>) {
         // The last frame, kept in registers: most chains have the previous one as their base, and
         // reading it back from memory right after writing it would cause a store-forwarding stall.
-        let mut last = (NO_BASE, Affine::identity());
-        let mut rest = transforms;
+        let mut last = (self.code.identity, Affine::identity());
         while let Some(first) = rest.first() {
             // Consecutive balls together, other instructions one by one.
             let mut count = 1;
@@ -84,18 +90,10 @@ impl Program {
                     run_balls(&rest[..count], pose);
                 }
                 Instruction::Chain { base, shift, first, end, output } => {
-                    // The initial `last` is the identity, right for a chain without a base as well.
-                    let from = if base == last.0 {
-                        last.1
-                    } else if base == NO_BASE {
-                        Affine::identity()
-                    } else {
-                        pose.transforms[base as usize]
-                    };
-                    let steps = &self.code.steps[first as usize..end as usize];
+                    let from = if base == last.0 { last.1 } else { pose.transforms[base.index()] };
                     let from = from.shifted(shift.cast());
-                    let frame = run_chain(&self.code, steps, from, pose, &mut Silent);
-                    pose.transforms[output as usize] = frame;
+                    let frame = run_chain(&self.code, first..end, from, pose, &mut Silent);
+                    pose.transforms[output.index()] = frame;
                     last = (output, frame);
                 }
                 Instruction::Contact { contact } => self.run_contact(contact, pose),
@@ -103,7 +101,6 @@ impl Program {
             }
             rest = &rest[count..];
         }
-        Ok(())
     }
 
     /// Checks sizes and fills the registers that no instruction computes.
@@ -126,7 +123,7 @@ impl Program {
         }
         if mode == Mode::Posed {
             for &(register, lower, upper) in &self.limits {
-                let value = &mut pose.scalars[register as usize];
+                let value = &mut pose.scalars[register.index()];
                 let (lower, upper) = (S::from_f64(lower), S::from_f64(upper));
                 *value = value.select_less(lower, lower, *value);
                 *value = upper.select_less(*value, upper, *value);
@@ -135,10 +132,10 @@ impl Program {
         // The register of a coordinate that a limit component holds will be overwritten with its
         // effective value: everything that reads the requested one reads this copy.
         for &(own, asked) in &self.asked {
-            pose.scalars[asked as usize] = pose.scalars[own as usize];
+            pose.scalars[asked.index()] = pose.scalars[own.index()];
         }
         for &(register, value) in &self.constants {
-            pose.scalars[register as usize] = S::from_f64(value);
+            pose.scalars[register.index()] = S::from_f64(value);
         }
         Ok(())
     }
@@ -149,36 +146,37 @@ impl Program {
         &self,
         instruction: &Instruction,
         mode: Mode,
-        scalars: &mut [S],
+        pose: &mut Pose<S>,
     ) {
+        let scalars = &mut pose.scalars;
         match *instruction {
             Instruction::Function { function, input, output } => {
-                let value = self.code.functions[function as usize].apply(scalars[input as usize]);
-                scalars[output as usize] = finite(value);
+                let value = self.code.functions[function as usize].apply(scalars[input.index()]);
+                scalars[output.index()] = finite(value);
             }
             Instruction::Combine { function, output } => {
                 let call = &self.code.combines[function as usize];
                 let mut values = [S::zero(); MOST_COMBINED];
                 let n = call.inputs.len();
                 for (value, &input) in values.iter_mut().zip(&call.inputs) {
-                    *value = scalars[input as usize];
+                    *value = scalars[input.index()];
                 }
-                scalars[output as usize] = finite(call.function.apply(&values[..n]));
+                scalars[output.index()] = finite(call.function.apply(&values[..n]));
             }
             Instruction::Hold { passive, lower, upper, output } => {
-                let mut value = scalars[passive as usize];
+                let mut value = scalars[passive.index()];
                 // The lower bound first: where the bounds cross, the upper one wins.
                 if mode == Mode::Posed {
-                    if lower != NO_BOUND {
-                        let bound = scalars[lower as usize];
+                    if let Some(lower) = lower {
+                        let bound = scalars[lower.index()];
                         value = value.select_less(bound, bound, value);
                     }
-                    if upper != NO_BOUND {
-                        let bound = scalars[upper as usize];
+                    if let Some(upper) = upper {
+                        let bound = scalars[upper.index()];
                         value = bound.select_less(value, bound, value);
                     }
                 }
-                scalars[output as usize] = value;
+                scalars[output.index()] = value;
             }
             Instruction::Cone { cone } => self.run_cone(cone, mode, scalars),
             Instruction::Contact { .. }
@@ -195,7 +193,7 @@ impl Program {
         let mut values = [S::zero(); 4];
         let n = call.inputs.len();
         for (i, &input) in call.inputs.iter().enumerate() {
-            values[i] = scalars[input as usize];
+            values[i] = scalars[input.index()];
             asked[i] = values[i].value();
         }
         if mode == Mode::Posed {
@@ -204,7 +202,7 @@ impl Program {
                 values = legal.map(S::from_f64);
             }
             // The effective posture is legal: no violation remains.
-            call.rows.iter().for_each(|&row| scalars[row as usize] = S::zero());
+            call.rows.iter().for_each(|&row| scalars[row.index()] = S::zero());
         } else {
             let rows = call.component.open_rows(&asked[..n]);
             for (&register, (value, slopes)) in call.rows.iter().zip(rows) {
@@ -212,12 +210,12 @@ impl Program {
                 // A row is known by value and slopes: Σ x.chain(0, slope) adds the derivatives
                 // only.
                 let terms = values[..n].iter().zip(slopes);
-                scalars[register as usize] = terms
+                scalars[register.index()] = terms
                     .fold(S::from_f64(value), |sum, (x, slope)| sum + x.chain(|_| (0.0, slope)));
             }
         }
         for (&output, value) in call.outputs.iter().zip(values) {
-            scalars[output as usize] = value;
+            scalars[output.index()] = value;
         }
     }
 
@@ -226,12 +224,12 @@ impl Program {
         let call = &self.code.contacts[contact as usize];
         let mut drivers = [S::zero(); 2];
         for (value, &driver) in drivers.iter_mut().zip(&call.drivers) {
-            *value = pose.scalars[driver as usize];
+            *value = pose.scalars[driver.index()];
         }
-        let frame = pose.transforms[call.frame as usize];
+        let frame = pose.transforms[call.frame.index()];
         let glide = call.law.glide(frame, &drivers[..call.drivers.len()]);
-        pose.transforms[call.output as usize] = Affine::from_rotation(glide.rotation);
+        pose.transforms[call.output.index()] = Affine::from_rotation(glide.rotation);
         let report = [glide.angles[0], glide.angles[1], glide.gaps[0], glide.gaps[1]];
-        pose.scalars[call.report as usize..][..4].copy_from_slice(&report);
+        pose.scalars[call.report.index()..][..4].copy_from_slice(&report);
     }
 }

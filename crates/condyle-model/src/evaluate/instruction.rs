@@ -6,37 +6,87 @@ use crate::component::{
 use crate::position::ComponentId;
 use condyle_math::function::{Function, FunctionOfSeveral};
 use condyle_math::{Affine, Scalar, Vec3};
+use std::ops::Range;
 
-/// Marks an absent bound.
-pub(super) const NO_BOUND: u32 = u32::MAX;
+/// A register of one scalar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Number(pub u32);
 
-/// Marks a chain that starts from the identity instead of a transform register.
-pub(super) const NO_BASE: u32 = u32::MAX;
+/// A register of a transform.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Frame(pub u32);
 
-impl Instruction {
-    /// Whether it computes scalars from scalars only.
-    pub(super) fn makes_scalars(&self) -> bool {
-        use Instruction::{Combine, Cone, Function, Hold};
-        matches!(self, Function { .. } | Combine { .. } | Hold { .. } | Cone { .. })
+/// The position of an angle in [`Code::turns`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Turn(pub u32);
+
+impl Number {
+    pub(super) fn new(index: usize) -> Self {
+        Self(index as u32)
+    }
+
+    #[inline(always)]
+    pub(super) fn index(self) -> usize {
+        self.0 as usize
+    }
+
+    /// This register and the three after it, which hold a quaternion x, y, z, w.
+    #[inline(always)]
+    pub(super) fn quaternion<S: Copy>(self, numbers: &[S]) -> [S; 4] {
+        *numbers[self.index()..].first_chunk().expect("four registers")
     }
 }
 
+impl Frame {
+    pub(super) fn new(index: usize) -> Self {
+        Self(index as u32)
+    }
+
+    #[inline(always)]
+    pub(super) fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// What drives a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Driver {
+    /// A scalar: one motion.
+    Number(Number),
+    /// An orientation in four scalars: three motions.
+    Orientation(Number),
+    /// An earlier transform: one motion for each direction that moves it.
+    Frame(Frame),
+}
+
 impl Step {
-    /// Whether it preserves lengths and angles; `transform` tells it for earlier transforms.
-    pub(super) fn is_rigid(self, code: &Code, transform: impl Fn(u32) -> bool) -> bool {
+    /// What drives it, in the order in which its motions are recorded, and whether it does not preserve
+    /// lengths and angles (an earlier transform may not either).
+    pub(super) fn drivers(self, code: &Code) -> (Vec<Driver>, bool) {
+        let numbers = |numbers: &[Number]| numbers.iter().map(|&n| Driver::Number(n)).collect();
         match self {
             Self::Fixed(index) => {
                 // MᵀM = 1, within the precision of numbers in files.
                 let m = code.fixed[index as usize].linear;
                 let product = m.transpose() * m;
-                [product.x - Vec3::X, product.y - Vec3::Y, product.z - Vec3::Z]
-                    .iter()
-                    .all(|column| column.norm() < 1e-6)
+                let off = [product.x - Vec3::X, product.y - Vec3::Y, product.z - Vec3::Z];
+                (vec![], !off.iter().all(|column| column.norm() < 1e-6))
             }
-            Self::Stretch { .. } | Self::Shear { .. } => false,
-            Self::Law(index) => code.laws[index as usize].law.is_rigid(),
-            Self::Transform(register) => transform(register),
-            _ => true,
+            Self::Shift(_) => (vec![], false),
+            Self::TurnX(turn)
+            | Self::TurnY(turn)
+            | Self::TurnZ(turn)
+            | Self::TurnAbout { turn, .. } => (numbers(&[code.turns[turn.0 as usize]]), false),
+            Self::Slide { distance, .. } => (numbers(&[distance]), false),
+            Self::Move(distances) => (numbers(&distances), false),
+            Self::Ball(orientation) => (vec![Driver::Orientation(orientation)], false),
+            Self::Stretch { factor, .. } => (numbers(&[factor]), true),
+            Self::Shear { amount, .. } => (numbers(&[amount]), true),
+            Self::Law(index) => {
+                let call = &code.laws[index as usize];
+                (numbers(&call.inputs), !call.law.is_rigid())
+            }
+            Self::Transform(of) | Self::Power { of, .. } => (vec![Driver::Frame(of)], false),
         }
     }
 }
@@ -48,37 +98,37 @@ pub(super) enum Step {
     Fixed(u32),
     /// A fixed translation.
     Shift(Vec3),
-    /// A rotation about the x axis of the frame; the number is the position in [`Code::turns`].
-    TurnX(u32),
+    /// A rotation about the x axis of the frame.
+    TurnX(Turn),
     /// A rotation about the y axis of the frame.
-    TurnY(u32),
+    TurnY(Turn),
     /// A rotation about the z axis of the frame.
-    TurnZ(u32),
+    TurnZ(Turn),
     /// A rotation about any axis of length 1.
-    Turn { axis: Vec3, turn: u32 },
-    /// A translation along any axis; `distance` is a scalar register.
-    Slide { axis: Vec3, distance: u32 },
-    /// Translations along the three axes of the frame, by three scalar registers.
-    Move([u32; 3]),
-    /// A rotation by a quaternion in four consecutive scalar registers x, y, z, w.
-    Ball(u32),
-    /// A scale; `along` is a position in [`Code::scales`], `factor` a scalar register.
-    Stretch { along: u32, factor: u32 },
-    /// A shear; `directions` is a position in [`Code::shears`], `amount` a scalar register.
-    Shear { directions: u32, amount: u32 },
+    TurnAbout { axis: Vec3, turn: Turn },
+    /// A translation along any axis.
+    Slide { axis: Vec3, distance: Number },
+    /// Translations along the three axes of the frame.
+    Move([Number; 3]),
+    /// A rotation by a quaternion in four consecutive registers x, y, z, w.
+    Ball(Number),
+    /// A scale; `along` is a position in [`Code::scales`].
+    Stretch { along: u32, factor: Number },
+    /// A shear; `directions` is a position in [`Code::shears`].
+    Shear { directions: u32, amount: Number },
     /// A smooth law of a few scalars, by its position in [`Code::laws`].
     Law(u32),
-    /// An earlier transform, by its register.
-    Transform(u32),
+    /// An earlier transform.
+    Transform(Frame),
     /// A power of the rotation of an earlier transform; -1 is its inverse.
-    Power { of: u32, exponent: f64 },
+    Power { of: Frame, exponent: f64 },
 }
 
 /// A smooth law with the registers it reads.
 #[derive(Clone, Debug)]
 pub(super) struct LawCall {
     pub law: AnyLaw,
-    pub inputs: Vec<u32>,
+    pub inputs: Vec<Number>,
 }
 
 /// The smooth laws of components.
@@ -114,36 +164,97 @@ impl Law for AnyLaw {
 /// One line of a program.
 #[derive(Clone, Debug)]
 pub(super) enum Instruction {
-    /// `scalars[output] = functions[function](scalars[input])`.
-    Function { function: u32, input: u32, output: u32 },
-    /// `scalars[output] = combines[function](scalars[inputs])`.
-    Combine { function: u32, output: u32 },
-    /// `scalars[output] = scalars[passive]`, clamped between two other scalars in posed mode.
-    Hold { passive: u32, lower: u32, upper: u32, output: u32 },
+    /// `output = functions[function](input)`.
+    Function { function: u32, input: Number, output: Number },
+    /// `output = combines[function](its inputs)`.
+    Combine { function: u32, output: Number },
+    /// `output = passive`, clamped between two other scalars in posed mode.
+    Hold { passive: Number, lower: Option<Number>, upper: Option<Number>, output: Number },
     /// The numbers of a ball joint, moved into a cone in posed mode.
     Cone { cone: u32 },
     /// The two rotations that bring a segment into contact with an ellipsoid.
     Contact { contact: u32 },
-    /// `transforms[output] = transforms[base] · shift · steps`.
-    Chain { base: u32, shift: Vec3, first: u32, end: u32, output: u32 },
+    /// `output = base · shift · steps`.
+    Chain { base: Frame, shift: Vec3, first: u32, end: u32, output: Frame },
     /// The most common chain of character skeletons: a shift and a ball.
-    BallAt { base: u32, shift: Vec3, orientation: u32, output: u32 },
+    BallAt { base: Frame, shift: Vec3, orientation: Number, output: Frame },
+}
+
+/// The registers that an instruction reads and writes.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Registers {
+    pub read: Vec<Number>,
+    pub read_frames: Vec<Frame>,
+    pub written: Vec<Number>,
+    /// The transform that it computes; the others compute scalars only.
+    pub frame: Option<Frame>,
+}
+
+impl Instruction {
+    /// The registers that it reads and writes; of an orientation the first of four.
+    pub(super) fn registers(&self, code: &Code) -> Registers {
+        let mut registers = Registers::default();
+        match *self {
+            Self::Function { input, output, .. } => {
+                registers.read.push(input);
+                registers.written.push(output);
+            }
+            Self::Combine { function, output } => {
+                registers.read.extend(&code.combines[function as usize].inputs);
+                registers.written.push(output);
+            }
+            Self::Hold { passive, lower, upper, output } => {
+                registers.read.extend([Some(passive), lower, upper].into_iter().flatten());
+                registers.written.push(output);
+            }
+            Self::Cone { cone } => {
+                let call = &code.cones[cone as usize];
+                registers.read.extend(&call.inputs);
+                registers.written.extend(call.outputs.iter().chain(&call.rows));
+            }
+            Self::Contact { contact } => {
+                let call = &code.contacts[contact as usize];
+                registers.read.extend(&call.drivers);
+                registers.read_frames.push(call.frame);
+                registers.written.extend((0..4).map(|k| Number(call.report.0 + k)));
+                registers.frame = Some(call.output);
+            }
+            Self::Chain { base, first, end, output, .. } => {
+                registers.read_frames.push(base);
+                for step in &code.steps[first as usize..end as usize] {
+                    for driver in step.drivers(code).0 {
+                        match driver {
+                            Driver::Number(n) | Driver::Orientation(n) => registers.read.push(n),
+                            Driver::Frame(frame) => registers.read_frames.push(frame),
+                        }
+                    }
+                }
+                registers.frame = Some(output);
+            }
+            Self::BallAt { base, orientation, output, .. } => {
+                registers.read_frames.push(base);
+                registers.read.push(orientation);
+                registers.frame = Some(output);
+            }
+        }
+        registers
+    }
 }
 
 /// A function of several scalars with the registers it reads.
 #[derive(Clone, Debug)]
 pub(super) struct CombineCall {
     pub function: FunctionOfSeveral,
-    pub inputs: Vec<u32>,
+    pub inputs: Vec<Number>,
 }
 
 /// A cone with its registers.
 #[derive(Clone, Debug)]
 pub(super) struct ConeCall {
     pub component: JointCone,
-    pub inputs: Vec<u32>,
-    pub outputs: Vec<u32>,
-    pub rows: Vec<u32>,
+    pub inputs: Vec<Number>,
+    pub outputs: Vec<Number>,
+    pub rows: Vec<Number>,
 }
 
 /// A contact with its registers.
@@ -151,13 +262,22 @@ pub(super) struct ConeCall {
 pub(super) struct ContactCall {
     pub component: ComponentId,
     pub law: Gliding,
-    /// The transform register of the segment in the ellipsoid's frame, before the contact.
-    pub frame: u32,
-    pub drivers: Vec<u32>,
-    /// The transform register of the two rotations.
-    pub output: u32,
+    /// The segment in the ellipsoid's frame, before the contact.
+    pub frame: Frame,
+    pub drivers: Vec<Number>,
+    /// The two rotations.
+    pub output: Frame,
     /// The first of four scalars: two angles, two gaps.
-    pub report: u32,
+    pub report: Number,
+}
+
+/// Instructions that run together: first those that compute scalars, then the sines and cosines of
+/// angles, then those that compute transforms.
+#[derive(Clone, Debug)]
+pub(super) struct Stage {
+    pub scalars: Range<usize>,
+    pub turns: Range<usize>,
+    pub transforms: Range<usize>,
 }
 
 /// The instructions in the order in which they run, and the tables that they refer to by position.
@@ -167,12 +287,11 @@ pub(super) struct Code {
     pub scalars: usize,
     /// The number of transform registers; the first are those of the segments.
     pub transforms: usize,
-    /// Scalar instructions, then those that compute transforms.
     pub instructions: Vec<Instruction>,
-    /// The number of scalar instructions.
-    pub scalar_instructions: usize,
-    /// The scalar registers of the angles whose sines and cosines are needed.
-    pub turns: Vec<u32>,
+    /// All instructions and turns, in order.
+    pub stages: Vec<Stage>,
+    /// The angles whose sines and cosines are needed.
+    pub turns: Vec<Number>,
     pub steps: Vec<Step>,
     pub fixed: Vec<Affine>,
     pub functions: Vec<Function>,
@@ -181,10 +300,12 @@ pub(super) struct Code {
     pub scales: Vec<Along>,
     /// The directions `along` and `across` of each shear.
     pub shears: Vec<[Vec3; 2]>,
-    /// The scalar registers of the limit rows: not negative in a legal posture.
-    pub rows: Vec<u32>,
+    /// The limit rows: not negative in a legal posture.
+    pub rows: Vec<Number>,
     pub cones: Vec<ConeCall>,
     pub contacts: Vec<ContactCall>,
-    /// The transform register of the model's root frame, the parent of the root segments.
-    pub base: u32,
+    /// The model's root frame, the parent of the root segments.
+    pub base: Frame,
+    /// A transform that stays the identity.
+    pub identity: Frame,
 }

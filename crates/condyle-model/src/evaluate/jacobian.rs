@@ -2,8 +2,9 @@
 
 use super::chain::{Recorder, run_chain};
 use super::deformation::NO_STRAIN;
+use super::derivative_plan::ScalarTerm;
 use super::forward::finite;
-use super::instruction::{Instruction, NO_BASE};
+use super::instruction::Instruction;
 use super::pose::Pose;
 use super::program::{Mode, Program, SizeMismatch};
 use super::tape::Tape;
@@ -99,97 +100,75 @@ impl Program {
         SizeMismatch::check("the Jacobian", self.plan.strains, jacobian.strains.len())?;
         SizeMismatch::check("the Jacobian", self.plan.derivatives, jacobian.derivatives.len())?;
         self.load(requested, Mode::Open, pose)?;
-        let plan = &self.plan;
-        let mut scalar_counts = plan.scalar_counts.iter();
-        let mut scalar_terms = plan.scalar_terms.iter();
-        let mut term_counts = plan.term_counts.iter();
-        let mut terms = plan.terms.iter();
-        for (number, instruction) in self.code.instructions.iter().enumerate() {
-            // All scalars are complete: sines and cosines of the angles can be computed.
-            if number == self.code.scalar_instructions {
-                pose.take_turns(&self.code.turns);
+        for stage in &self.code.stages {
+            for number in stage.scalars.clone() {
+                self.differentiate_scalar(number, pose, &mut jacobian.derivatives);
             }
-            let (base, output) = match *instruction {
-                Instruction::Chain { base, output, .. } => (base, output),
-                Instruction::BallAt { base, output, .. } => (base, output),
-                Instruction::Contact { contact } => {
-                    (NO_BASE, self.code.contacts[contact as usize].output)
-                }
-                _ => {
-                    let count = scalar_counts.next().copied().unwrap_or(0) as usize;
-                    let own = scalar_terms.as_slice().get(..count).unwrap_or(&[]);
-                    scalar_terms = scalar_terms.as_slice().get(count..).unwrap_or(&[]).iter();
-                    self.differentiate_scalar(instruction, own, pose, &mut jacobian.derivatives);
-                    continue;
-                }
-            };
-            let from =
-                if base == NO_BASE { Affine::IDENTITY } else { pose.transforms[base as usize] };
-            // The tape borrows the Jacobian for one instruction; its iterators are copied back
-            // after.
-            let mut tape = Tape {
-                twists: &mut jacobian.twists,
-                strains: &mut jacobian.strains,
-                deforming: plan.deforming[output as usize],
-                derivatives: &jacobian.derivatives,
-                counts: term_counts.clone(),
-                terms: terms.clone(),
-                scalars: &pose.scalars,
-                plan,
-            };
-            let end = match *instruction {
-                Instruction::BallAt { shift, orientation, .. } => {
-                    let q = orientation as usize;
-                    let q: &[f64; 4] = pose.scalars[q..].first_chunk().expect("four registers");
-                    let at = from.shifted(shift);
-                    let turned = at.linear * Quat::from(*q).to_mat3();
-                    let end = Affine::new(turned, at.translation);
-                    for (unit, axis) in Vec3::UNITS.into_iter().zip([turned.x, turned.y, turned.z])
-                    {
-                        let inside = || Twist::rotation(unit, Vec3::ZERO);
-                        tape.motion(end, inside, || Twist::rotation(axis, at.translation));
-                    }
-                    end
-                }
-                Instruction::Chain { shift, first, end, .. } => {
-                    let steps = &self.code.steps[first as usize..end as usize];
-                    run_chain(&self.code, steps, from.shifted(shift), pose, &mut tape)
-                }
-                Instruction::Contact { contact } => {
-                    let call = &self.code.contacts[contact as usize];
-                    let frame = pose.transforms[call.frame as usize];
-                    let (turns, report) = tape.contact(call, frame);
-                    (term_counts, terms) = (tape.counts, tape.terms);
-                    pose.scalars[call.report as usize..][..4].copy_from_slice(&report);
-                    pose.transforms[output as usize] = turns;
-                    continue;
-                }
-                _ => from,
-            };
-            (term_counts, terms) = (tape.counts, tape.terms);
-            pose.transforms[output as usize] = end;
+            pose.take_turns(&self.code.turns, stage.turns.clone());
+            for number in stage.transforms.clone() {
+                self.differentiate_transform(number, pose, jacobian);
+            }
         }
         Ok(())
     }
 
-    /// Runs a scalar instruction and applies the chain rule to it; `terms` are its own.
-    fn differentiate_scalar(
-        &self,
-        instruction: &Instruction,
-        terms: &[super::derivative_plan::ScalarTerm],
-        pose: &mut Pose,
-        derivatives: &mut [f64],
-    ) {
-        let mut add = |term: &super::derivative_plan::ScalarTerm, slope: f64| {
+    /// Runs an instruction that computes a transform and records the twists of its motions.
+    #[inline(always)]
+    fn differentiate_transform(&self, number: usize, pose: &mut Pose, jacobian: &mut Jacobian) {
+        let plan = &self.plan;
+        let mut tape = Tape {
+            twists: &mut jacobian.twists,
+            strains: &mut jacobian.strains,
+            deforming: false,
+            derivatives: &jacobian.derivatives,
+            scalars: &pose.scalars,
+            plan,
+            unit: plan.instruction_units[number] as usize,
+        };
+        match self.code.instructions[number] {
+            Instruction::BallAt { base, shift, orientation, output } => {
+                tape.deforming = plan.deforming[output.index()];
+                let at = pose.transforms[base.index()].shifted(shift);
+                let q = orientation.quaternion(&pose.scalars);
+                let turned = at.linear * Quat::from(q).to_mat3();
+                let end = Affine::new(turned, at.translation);
+                for (unit, axis) in Vec3::UNITS.into_iter().zip([turned.x, turned.y, turned.z]) {
+                    let inside = || Twist::rotation(unit, Vec3::ZERO);
+                    tape.motion(end, inside, || Twist::rotation(axis, at.translation));
+                }
+                pose.transforms[output.index()] = end;
+            }
+            Instruction::Chain { base, shift, first, end, output } => {
+                tape.deforming = plan.deforming[output.index()];
+                let from = pose.transforms[base.index()].shifted(shift);
+                let end = run_chain(&self.code, first..end, from, pose, &mut tape);
+                pose.transforms[output.index()] = end;
+            }
+            Instruction::Contact { contact } => {
+                let call = &self.code.contacts[contact as usize];
+                let frame = pose.transforms[call.frame.index()];
+                let (turns, report) = tape.contact(call, frame);
+                pose.scalars[call.report.index()..][..4].copy_from_slice(&report);
+                pose.transforms[call.output.index()] = turns;
+            }
+            _ => {}
+        }
+    }
+
+    /// Runs a scalar instruction and applies the chain rule to it.
+    #[inline(always)]
+    fn differentiate_scalar(&self, number: usize, pose: &mut Pose, derivatives: &mut [f64]) {
+        let terms = self.plan.scalar_terms(number);
+        let mut add = |term: &ScalarTerm, slope: f64| {
             let addend = slope * derivatives[term.from as usize];
             let to = &mut derivatives[term.to as usize];
             *to = if term.first { addend } else { *to + addend };
         };
-        match *instruction {
+        match self.code.instructions[number] {
             Instruction::Function { function, input, output } => {
-                let x = pose.scalars[input as usize];
+                let x = pose.scalars[input.index()];
                 let (value, slope) = self.code.functions[function as usize].value_and_slope(x);
-                pose.scalars[output as usize] = finite(value);
+                pose.scalars[output.index()] = finite(value);
                 terms.iter().for_each(|term| add(term, slope));
             }
             Instruction::Combine { function, output } => {
@@ -197,28 +176,28 @@ impl Program {
                 let n = call.inputs.len();
                 let mut values = [0.0; MOST_COMBINED];
                 for (value, &input) in values.iter_mut().zip(&call.inputs) {
-                    *value = pose.scalars[input as usize];
+                    *value = pose.scalars[input.index()];
                 }
                 let values = &values[..n];
-                pose.scalars[output as usize] = finite(call.function.apply(values));
+                pose.scalars[output.index()] = finite(call.function.apply(values));
                 terms.iter().for_each(|t| add(t, call.function.slope(values, t.slope as usize)));
             }
             Instruction::Hold { passive, output, .. } => {
-                pose.scalars[output as usize] = pose.scalars[passive as usize];
+                pose.scalars[output.index()] = pose.scalars[passive.index()];
                 terms.iter().for_each(|term| add(term, 1.0));
             }
             Instruction::Cone { cone } => {
                 let call = &self.code.cones[cone as usize];
                 let mut numbers = [0.0; 4];
                 for (i, &input) in call.inputs.iter().enumerate() {
-                    numbers[i] = pose.scalars[input as usize];
+                    numbers[i] = pose.scalars[input.index()];
                 }
                 for (&output, value) in call.outputs.iter().zip(numbers) {
-                    pose.scalars[output as usize] = value;
+                    pose.scalars[output.index()] = value;
                 }
                 let rows = call.component.open_rows(&numbers[..call.inputs.len()]);
                 for (&register, (value, _)) in call.rows.iter().zip(&rows) {
-                    pose.scalars[register as usize] = *value;
+                    pose.scalars[register.index()] = *value;
                 }
                 // Position 0 is that of the angles, 1 + 3·row + k that of a row along angle k.
                 for term in terms {

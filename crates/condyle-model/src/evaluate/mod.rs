@@ -35,10 +35,10 @@ mod derivative_plan;
 mod forward;
 mod instruction;
 mod jacobian;
-mod normals;
 mod pose;
 mod program;
 mod rotation_rate;
+mod stage;
 mod tape;
 
 pub use closure::ClosureRows;

@@ -1,8 +1,10 @@
 //! The buffers and results of one evaluation.
 
+use super::instruction::{Number, Turn};
 use super::program::Program;
 use crate::model::{CoordinateId, Model, SegmentId};
-use condyle_math::{Affine, Scalar};
+use condyle_math::{Affine, Mat3, Scalar};
+use std::ops::Range;
 
 /// The result of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,9 +30,9 @@ pub struct Pose<S = f64> {
     turns: Vec<(S, S)>,
     segments: usize,
     stored: usize,
-    rows: Vec<u32>,
+    rows: Vec<Number>,
     base: usize,
-    reports: Vec<u32>,
+    reports: Vec<Number>,
 }
 
 impl<S: Scalar> Pose<S> {
@@ -44,7 +46,7 @@ impl<S: Scalar> Pose<S> {
             segments: program.segments,
             stored: program.stored,
             rows: program.code.rows.clone(),
-            base: program.code.base as usize,
+            base: program.code.base.index(),
             reports: program.code.contacts.iter().map(|c| c.report).collect(),
         }
     }
@@ -67,21 +69,43 @@ impl<S: Scalar> Pose<S> {
         self.transforms[segment.map_or(self.base, SegmentId::index)]
     }
 
-    /// Computes sine and cosine of all angles in one loop, which the compiler can vectorise.
-    pub(super) fn take_turns(&mut self, registers: &[u32]) {
+    /// The transform of a segment in its parent, or in the model's root frame: what its joint does, with
+    /// the fixed frames before and after it.
+    ///
+    /// Not finite where a scale has made the parent flat.
+    pub fn segment_in_parent(&self, model: &Model, segment: SegmentId) -> Affine<S> {
+        let parent = self.frame(model.segment(segment).parent);
+        let back = parent.linear.inverse();
+        let own = self.segment(segment);
+        Affine::new(back * own.linear, back * (own.translation - parent.translation))
+    }
+
+    /// The matrix that carries a surface normal of a segment to the world: the inverse transpose of its
+    /// linear part (Rotenberg, *Skeletons*, section 2.2.5), which for a rigid segment is its rotation.
+    ///
+    /// Where the segment is not rigid the result has to be normalised; it is not finite where a scale
+    /// has made the segment flat.
+    pub fn normal(&self, segment: SegmentId) -> Mat3<S> {
+        self.segment(segment).linear.inverse().transpose()
+    }
+
+    /// Computes sine and cosine of angles in one loop, which the compiler can vectorise.
+    #[inline(always)]
+    pub(super) fn take_turns(&mut self, registers: &[Number], of: Range<usize>) {
+        let angles = &mut self.angles[of.clone()];
         // Gathered first, so that the second loop runs over contiguous memory.
-        for (angle, &register) in self.angles.iter_mut().zip(registers) {
-            *angle = self.scalars[register as usize];
+        for (angle, &register) in angles.iter_mut().zip(&registers[of.clone()]) {
+            *angle = self.scalars[register.index()];
         }
-        for (turn, angle) in self.turns.iter_mut().zip(&self.angles) {
+        for (turn, angle) in self.turns[of].iter_mut().zip(angles) {
             *turn = angle.sin_cos();
         }
     }
 
     /// Sine and cosine of a rotation angle, by its position in `Code::turns`.
     #[inline(always)]
-    pub(super) fn turn(&self, number: u32) -> (S, S) {
-        self.turns[number as usize]
+    pub(super) fn turn(&self, turn: Turn) -> (S, S) {
+        self.turns[turn.0 as usize]
     }
 
     /// Sets the rigid transform of the model's root frame, to place the model in a scene or in
@@ -92,7 +116,7 @@ impl<S: Scalar> Pose<S> {
 
     /// The result of a contact, by its position in [`Program::contacts`].
     pub fn contact(&self, number: usize) -> Option<ContactReport<S>> {
-        let at = *self.reports.get(number)? as usize;
+        let at = self.reports.get(number)?.index();
         let [a, b, c, d] = *self.scalars[at..].first_chunk()?;
         Some(ContactReport { angles: [a, b], gaps: [c, d] })
     }
@@ -114,7 +138,7 @@ impl<S: Scalar> Pose<S> {
     /// Intended for open mode. In posed mode the row of a bound or a range is that of the requested
     /// value, and the rows of a cone are 0.
     pub fn limit_row(&self, row: usize) -> S {
-        self.scalars[self.rows[row] as usize]
+        self.scalars[self.rows[row].index()]
     }
 
     /// The effective stored numbers of one coordinate.

@@ -1,7 +1,7 @@
 //! The compiled form of a model.
 
 use super::derivative_plan::DerivativePlan;
-use super::instruction::Code;
+use super::instruction::{Code, Frame, Number};
 use crate::model::{ComponentId, CoordinateId, Model, SegmentId};
 use std::fmt;
 
@@ -22,12 +22,12 @@ pub struct Program {
     pub(super) stored: usize,
     pub(super) segments: usize,
     /// Scalar registers with constant values.
-    pub(super) constants: Vec<(u32, f64)>,
+    pub(super) constants: Vec<(Number, f64)>,
     /// For each number of a coordinate that a limit component holds, its own register and that of
     /// the requested value.
-    pub(super) asked: Vec<(u32, u32)>,
+    pub(super) asked: Vec<(Number, Number)>,
     /// Register, lower and upper bound of every coordinate that posed mode clamps.
-    pub(super) limits: Vec<(u32, f64, f64)>,
+    pub(super) limits: Vec<(Number, f64, f64)>,
     pub(super) code: Code,
     pub(super) plan: DerivativePlan,
 }
@@ -83,7 +83,7 @@ impl Program {
     ///
     /// [`Jacobian`]: super::Jacobian
     pub fn segment_directions(&self, segment: SegmentId) -> &[(u32, u32)] {
-        self.plan.segment_entries(segment.index())
+        self.plan.frame_entries(Frame::new(segment.index()))
     }
 
     /// The contacts that move a segment: [`Pose::contact`](super::Pose::contact) takes a position

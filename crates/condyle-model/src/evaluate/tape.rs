@@ -3,7 +3,7 @@
 use super::chain::Recorder;
 use super::deformation::{NO_STRAIN, Rate, sum, times};
 use super::derivative_plan::{DerivativePlan, Start, Term};
-use super::instruction::{Code, ContactCall};
+use super::instruction::{Code, ContactCall, Frame};
 use super::rotation_rate::{exp_rate, log_rate};
 use crate::component::{Law, LawDual, MOST_LAW_INPUTS};
 use condyle_math::{Affine, Dual, Mat3, Twist, Vec3};
@@ -11,30 +11,37 @@ use condyle_math::{Affine, Dual, Mat3, Twist, Vec3};
 /// Accumulates unit motions to the twists of directions, in the order of the derivative plan.
 ///
 /// A unit motion is the generator per unit of a scalar; its contribution to the twist of a
-/// direction is multiplied by ∂scalar/∂direction.
-pub(super) struct Tape<'p, 'a> {
+/// direction is multiplied by ∂scalar/∂direction. The plan knows the unit motions of each step.
+pub(super) struct Tape<'a> {
     pub twists: &'a mut [Twist],
     pub strains: &'a mut [Mat3],
     /// Whether something in this chain is not rigid, so that its own twists have strains.
     pub deforming: bool,
     pub derivatives: &'a [f64],
-    pub counts: std::slice::Iter<'p, u32>,
-    pub terms: std::slice::Iter<'p, Term>,
     pub scalars: &'a [f64],
-    pub plan: &'p DerivativePlan,
+    pub plan: &'a DerivativePlan,
+    /// The next unit motion.
+    pub unit: usize,
 }
 
-impl Tape<'_, '_> {
+impl<'a> Tape<'a> {
+    /// The terms of the next unit motion.
+    #[inline(always)]
+    fn next(&mut self) -> &'a [Term] {
+        let terms = self.plan.unit_terms(self.unit);
+        self.unit += 1;
+        terms
+    }
+
     #[inline(always)]
     fn emit(&mut self, twist: impl FnOnce() -> Twist) {
         // No direction moves this scalar: its twist need not be computed.
-        let count = self.counts.next().copied().unwrap_or(0);
-        if count == 0 {
+        let terms = self.next();
+        if terms.is_empty() {
             return;
         }
         let unit = twist();
-        for _ in 0..count {
-            let Some(term) = self.terms.next() else { return };
+        for term in terms {
             let addend = unit * self.derivatives[term.derivative as usize];
             self.twists[term.twist as usize] = match term.start {
                 Start::Zero => addend,
@@ -46,13 +53,12 @@ impl Tape<'_, '_> {
 
     /// The same as `emit`, for a chain whose twists have strains.
     fn emit_rate(&mut self, rate: impl FnOnce() -> Rate) {
-        let count = self.counts.next().copied().unwrap_or(0);
-        if count == 0 {
+        let terms = self.next();
+        if terms.is_empty() {
             return;
         }
         let (unit, unit_strain) = rate().split();
-        for _ in 0..count {
-            let Some(term) = self.terms.next() else { return };
+        for term in terms {
             let factor = self.derivatives[term.derivative as usize];
             let (twist, strain) = match term.start {
                 Start::Zero => (Twist::zero(), NO_STRAIN),
@@ -75,7 +81,7 @@ impl Tape<'_, '_> {
 /// two drivers.
 type ContactDual = Dual<8>;
 
-impl Tape<'_, '_> {
+impl Tape<'_> {
     /// Evaluates a contact with its derivatives: the transform of its rotations, and their two
     /// angles and two gaps.
     ///
@@ -103,7 +109,7 @@ impl Tape<'_, '_> {
         let moving = Affine::new(linear, carried(frame.translation, true));
         let mut drivers = [ContactDual::constant(0.0); 2];
         for (k, &driver) in call.drivers.iter().enumerate() {
-            drivers[k] = ContactDual::variable(self.scalars[driver as usize], 6 + k);
+            drivers[k] = ContactDual::variable(self.scalars[driver.index()], 6 + k);
         }
         let glide = call.law.glide(moving, &drivers[..call.drivers.len()]);
         let pick = |v: Vec3<ContactDual>, f: &dyn Fn(ContactDual) -> f64| {
@@ -125,7 +131,7 @@ impl Tape<'_, '_> {
             weights.into_iter().zip(spins).fold(Vec3::ZERO, |sum, (w, s)| sum + s * w)
         };
         // In the order of the plan: the directions of the frame, then the drivers.
-        for &(_, twist) in self.plan.segment_entries(call.frame as usize) {
+        for &(_, twist) in self.plan.frame_entries(call.frame) {
             let inner = self.twists[twist as usize];
             self.emit(|| Twist::rotation(spin(inner), Vec3::ZERO));
         }
@@ -138,7 +144,12 @@ impl Tape<'_, '_> {
     }
 }
 
-impl Recorder<f64> for Tape<'_, '_> {
+impl Recorder<f64> for Tape<'_> {
+    #[inline(always)]
+    fn begin(&mut self, step: usize) {
+        self.unit = self.plan.step_units[step] as usize;
+    }
+
     #[inline(always)]
     fn motion(
         &mut self,
@@ -162,7 +173,7 @@ impl Recorder<f64> for Tape<'_, '_> {
         let call = &code.laws[law as usize];
         let mut inputs = [LawDual::constant(0.0); MOST_LAW_INPUTS];
         for (i, &register) in call.inputs.iter().enumerate() {
-            inputs[i] = LawDual::variable(self.scalars[register as usize], i);
+            inputs[i] = LawDual::variable(self.scalars[register.index()], i);
         }
         let moved = call.law.transform(&inputs[..call.inputs.len()]);
         let part = |v: Vec3<LawDual>, f: &dyn Fn(LawDual) -> f64| Vec3::new(f(v.x), f(v.y), f(v.z));
@@ -182,12 +193,12 @@ impl Recorder<f64> for Tape<'_, '_> {
         }
     }
 
-    fn power(&mut self, register: u32, exponent: f64, rotation: Mat3, before: Affine) {
+    fn power(&mut self, of: Frame, exponent: f64, rotation: Mat3, before: Affine) {
         // ±1 need no logarithm, and have no kink at a half turn.
         let plain = exponent == 1.0 || exponent == -1.0;
         let turn = if plain { Vec3::ZERO } else { rotation.log() };
         let raised = turn * exponent;
-        for &(_, twist) in self.plan.segment_entries(register as usize) {
+        for &(_, twist) in self.plan.frame_entries(of) {
             let spin = self.twists[twist as usize].angular;
             // The angular velocity of exp(p·ρ) is J(p·ρ)·p·J(ρ)⁻¹·ω, with J the left Jacobian of
             // SO(3). For p = -1, Rᵀ has the angular velocity -Rᵀ·ω.
@@ -204,9 +215,9 @@ impl Recorder<f64> for Tape<'_, '_> {
         }
     }
 
-    fn transform(&mut self, register: u32, before: Affine) {
+    fn transform(&mut self, of: Frame, before: Affine) {
         // The twists of the earlier transform, in its own base, mapped by the adjoint of `before`.
-        for &(_, twist) in self.plan.segment_entries(register as usize) {
+        for &(_, twist) in self.plan.frame_entries(of) {
             let inner = self.twists[twist as usize];
             if self.deforming {
                 let strain = self.strain(twist);

@@ -1,6 +1,8 @@
 //! Compilation of chains: the steps of the motions of segments, concatenated.
 
-use super::super::instruction::{AnyLaw, ContactCall, Instruction, LawCall, NO_BASE, Step};
+use super::super::instruction::{
+    AnyLaw, ContactCall, Frame, Instruction, LawCall, Number, Step, Turn,
+};
 use super::{Compiler, Operand};
 use crate::component::{Compensate, Component, Contact, Signal, shear};
 use crate::model::{ComponentId, SegmentId};
@@ -23,9 +25,9 @@ fn merge_slides(steps: &mut Vec<Step>) {
 impl Compiler<'_> {
     /// The registers of the rotations A and A′ of [`Compensate`]: of the path from the parent of
     /// the topmost named ancestor to the parent of the segment, without and with compensation.
-    pub(super) fn paths(&mut self, compensate: &Compensate) -> (u32, u32) {
+    pub(super) fn paths(&mut self, compensate: &Compensate) -> (Frame, Frame) {
         let path = self.model.compensated_path(compensate);
-        let mut registers = [0; 2];
+        let mut registers = [self.program.code.identity; 2];
         for (register, take) in registers.iter_mut().zip([0.0, compensate.weight]) {
             let mut steps = vec![];
             for &id in &path {
@@ -46,14 +48,14 @@ impl Compiler<'_> {
                 self.fixed(Affine::from_rotation(back), &mut steps);
             }
             *register = self.new_transform();
-            self.chain(NO_BASE, steps, *register);
+            self.chain(self.program.code.identity, steps, *register);
         }
         (registers[0], registers[1])
     }
 
     /// Compiles a contact: the chain from the ellipsoid to the joint frame of the segment, and the
     /// instruction that computes the rotations from it. Returns the register of the rotations.
-    pub(super) fn contact(&mut self, component: ComponentId, contact: &Contact) -> u32 {
+    pub(super) fn contact(&mut self, component: ComponentId, contact: &Contact) -> Frame {
         let mut steps = vec![];
         self.fixed(contact.law.ellipsoid_in_surface().rigid_inverse(), &mut steps);
         // The own motion of the gliding segment is the contact; before it comes `before`, if any.
@@ -71,7 +73,7 @@ impl Compiler<'_> {
             }
         }
         let frame = self.new_transform();
-        self.chain(NO_BASE, steps, frame);
+        self.chain(self.program.code.identity, steps, frame);
         let drivers = contact.drivers.iter().map(|&driver| {
             let scalar = self.scalar(driver);
             self.register(scalar)
@@ -79,7 +81,7 @@ impl Compiler<'_> {
         let drivers = drivers.collect();
         let output = self.new_transform();
         // Two angles and two gaps.
-        let report = self.program.code.scalars as u32;
+        let report = Number::new(self.program.code.scalars);
         self.program.code.scalars += 4;
         let joint = self.model.segment(contact.segment).joint_in_segment;
         let law = contact.law.seen_from(joint);
@@ -90,9 +92,9 @@ impl Compiler<'_> {
         output
     }
 
-    pub(super) fn new_transform(&mut self) -> u32 {
+    pub(super) fn new_transform(&mut self) -> Frame {
         self.program.code.transforms += 1;
-        self.program.code.transforms as u32 - 1
+        Frame::new(self.program.code.transforms - 1)
     }
 
     /// Appends the steps of a transform component. Products are expanded with an explicit stack, so
@@ -238,7 +240,7 @@ impl Compiler<'_> {
 
     pub(super) fn segment(&mut self, id: SegmentId) {
         let segment = self.model.segment(id);
-        let base = segment.parent.map_or(self.program.code.base, |p| p.0);
+        let base = segment.parent.map_or(self.program.code.base, |p| Frame(p.0));
         let mut steps = vec![];
         self.fixed(segment.joint_in_parent, &mut steps);
         if let Some(Signal::Output(component, _)) = segment.motion {
@@ -248,16 +250,17 @@ impl Compiler<'_> {
             }
         }
         self.fixed(segment.joint_in_segment.rigid_inverse(), &mut steps);
-        self.chain(base, steps, id.0);
+        self.chain(base, steps, Frame(id.0));
     }
 
-    pub(super) fn chain(&mut self, base: u32, steps: Vec<Step>, output: u32) {
+    pub(super) fn chain(&mut self, base: Frame, steps: Vec<Step>, output: Frame) {
+        let identity = self.program.code.identity;
         // A leading shift becomes part of the instruction.
         let instruction = match steps[..] {
-            [Step::Ball(orientation)] if base != NO_BASE => {
+            [Step::Ball(orientation)] if base != identity => {
                 Instruction::BallAt { base, shift: Vec3::ZERO, orientation, output }
             }
-            [Step::Shift(shift), Step::Ball(orientation)] if base != NO_BASE => {
+            [Step::Shift(shift), Step::Ball(orientation)] if base != identity => {
                 Instruction::BallAt { base, shift, orientation, output }
             }
             _ => {
@@ -276,12 +279,13 @@ impl Compiler<'_> {
 
     /// The step that rotates about an axis of length 1; rotations by the same angle share its sine
     /// and cosine.
-    fn turn(&mut self, axis: Vec3, angle: u32) -> Step {
+    fn turn(&mut self, axis: Vec3, angle: Number) -> Step {
         let turns = &mut self.program.code.turns;
         let turn = turns.iter().position(|&known| known == angle).unwrap_or_else(|| {
             turns.push(angle);
             turns.len() - 1
-        }) as u32;
+        });
+        let turn = Turn(turn as u32);
         if axis == Vec3::X {
             Step::TurnX(turn)
         } else if axis == Vec3::Y {
@@ -289,7 +293,7 @@ impl Compiler<'_> {
         } else if axis == Vec3::Z {
             Step::TurnZ(turn)
         } else {
-            Step::Turn { axis, turn }
+            Step::TurnAbout { axis, turn }
         }
     }
 }

@@ -4,7 +4,7 @@ mod chain;
 mod scalar;
 
 use super::derivative_plan::{DerivativePlan, plan};
-use super::instruction::{Code, Instruction};
+use super::instruction::{Code, Frame, Number};
 use super::program::Program;
 use crate::component::{Component, Signal, Swinging};
 use crate::model::{
@@ -16,7 +16,7 @@ use std::collections::HashMap;
 #[derive(Clone, Copy, Debug)]
 enum Operand {
     Constant(f64),
-    Register(u32),
+    Register(Number),
 }
 
 struct Compiler<'m> {
@@ -27,11 +27,11 @@ struct Compiler<'m> {
     /// The value of each output of each scalar component.
     outputs: Vec<Vec<Operand>>,
     /// The register of each transform component with several readers.
-    shared: Vec<Option<u32>>,
+    shared: Vec<Option<Frame>>,
     /// For each compensation the registers of the path without and with compensation.
-    compensations: Vec<Option<(u32, u32)>>,
+    compensations: Vec<Option<(Frame, Frame)>>,
     /// For each contact the register of its rotations.
-    contacts: Vec<Option<u32>>,
+    contacts: Vec<Option<Frame>>,
     /// The number of readers of each component.
     readers: Vec<usize>,
     needed: Vec<bool>,
@@ -106,9 +106,9 @@ fn compile(model: &Model, wanted: &[bool], moving: &[bool]) -> Program {
             limits: vec![],
             code: Code {
                 scalars: model.stored_len(),
-                transforms: model.segments.len() + 1,
+                transforms: model.segments.len() + 2,
                 instructions: vec![],
-                scalar_instructions: 0,
+                stages: vec![],
                 turns: vec![],
                 steps: vec![],
                 fixed: vec![],
@@ -120,13 +120,14 @@ fn compile(model: &Model, wanted: &[bool], moving: &[bool]) -> Program {
                 rows: vec![],
                 cones: vec![],
                 contacts: vec![],
-                base: model.segments.len() as u32,
+                base: Frame::new(model.segments.len()),
+                identity: Frame::new(model.segments.len() + 1),
             },
             plan: DerivativePlan::default(),
         },
         coordinates: model
             .coordinate_ids()
-            .map(|id| Operand::Register(model.stored_range(id).start as u32))
+            .map(|id| Operand::Register(Number::new(model.stored_range(id).start)))
             .collect(),
         outputs: vec![vec![]; components],
         shared: vec![None; components],
@@ -148,11 +149,8 @@ fn compile(model: &Model, wanted: &[bool], moving: &[bool]) -> Program {
             compiler.segment(segment);
         }
     }
-    // Operand instructions read scalars only, so all of them can run first. The sort is stable.
-    let code = &mut compiler.program.code;
-    code.instructions.sort_by_key(|instruction| !instruction.makes_scalars());
-    code.scalar_instructions = code.instructions.partition_point(Instruction::makes_scalars);
-    let directions: Vec<(u32, u32)> = model
+    compiler.program.code.order();
+    let directions: Vec<(Number, u32)> = model
         .coordinate_ids()
         .filter(|&id| model.coordinate(id).follows.is_none())
         .filter(|&id| moving[model.tangent_range(id).start])
@@ -259,10 +257,10 @@ impl Compiler<'_> {
             // New registers for the requested numbers; readers of the coordinate are redirected
             // there.
             let own = self.model.stored_range(id);
-            let asked = self.program.code.scalars as u32;
+            let asked = self.program.code.scalars;
             self.program.code.scalars += own.len();
-            self.coordinates[id.index()] = Operand::Register(asked);
-            let pairs = own.zip(asked..).map(|(own, asked)| (own as u32, asked));
+            self.coordinates[id.index()] = Operand::Register(Number::new(asked));
+            let pairs = own.zip(asked..).map(|(own, asked)| (Number::new(own), Number::new(asked)));
             self.program.asked.extend(pairs);
         }
     }
@@ -277,7 +275,7 @@ impl Compiler<'_> {
                 && coordinate.follows.is_none()
                 && coordinate.kind != CoordinateKind::Orientation
             {
-                let register = self.model.stored_range(id).start as u32;
+                let register = self.own(id);
                 self.program.limits.push((register, lower, upper));
             }
         }

@@ -1,9 +1,9 @@
 //! Compilation of scalar components to scalar instructions.
 
-use super::super::instruction::{CombineCall, ConeCall, Instruction, NO_BASE, NO_BOUND};
+use super::super::instruction::{CombineCall, ConeCall, Instruction, Number};
 use super::{Compiler, Operand};
 use crate::component::{Component, Depend, JointCone, Signal, Swinging};
-use crate::model::{ComponentId, Node};
+use crate::model::{ComponentId, CoordinateId, Node};
 use condyle_math::function::FunctionOfSeveral;
 
 impl Compiler<'_> {
@@ -18,7 +18,7 @@ impl Compiler<'_> {
     }
 
     /// The register of a scalar; a new one for a constant.
-    pub(super) fn register(&mut self, scalar: Operand) -> u32 {
+    pub(super) fn register(&mut self, scalar: Operand) -> Number {
         match scalar {
             Operand::Register(register) => register,
             Operand::Constant(value) => {
@@ -29,18 +29,21 @@ impl Compiler<'_> {
         }
     }
 
-    pub(super) fn new_scalar(&mut self) -> u32 {
+    /// The (first) register of a coordinate's effective value, where readers of the pose expect it.
+    pub(super) fn own(&self, id: CoordinateId) -> Number {
+        Number::new(self.model.stored_range(id).start)
+    }
+
+    pub(super) fn new_scalar(&mut self) -> Number {
         self.program.code.scalars += 1;
-        self.program.code.scalars as u32 - 1
+        Number::new(self.program.code.scalars - 1)
     }
 
     pub(super) fn node(&mut self, node: Node) {
         match node {
             Node::Coordinate(id) => {
                 let Some(leader) = self.model.coordinate(id).follows else { return };
-                // The effective value must be in the coordinate's own register, where readers of
-                // the pose expect it.
-                let own = self.model.stored_range(id).start as u32;
+                let own = self.own(id);
                 match self.scalar(leader) {
                     Operand::Constant(value) => {
                         self.program.constants.push((own, value));
@@ -60,8 +63,8 @@ impl Compiler<'_> {
     pub(super) fn function(
         &mut self,
         function: condyle_math::function::Function,
-        input: u32,
-        output: u32,
+        input: Number,
+        output: Number,
     ) {
         self.program.code.functions.push(function);
         let function = self.program.code.functions.len() as u32 - 1;
@@ -115,7 +118,7 @@ impl Compiler<'_> {
                     let register = self.new_transform();
                     let mut steps = vec![];
                     self.append(id, &mut steps);
-                    self.chain(NO_BASE, steps, register);
+                    self.chain(self.program.code.identity, steps, register);
                     self.shared[id.index()] = Some(register);
                 }
             }
@@ -129,13 +132,14 @@ impl Compiler<'_> {
         let passive = self.register(passive);
         let driver = self.scalar(depend.driver);
         let driver = self.register(driver);
-        let mut bounds = [NO_BOUND; 2];
+        let mut bounds = [None; 2];
         let sides = [(&depend.lower, 1.0), (&depend.upper, -1.0)];
         for (bound, (function, sign)) in bounds.iter_mut().zip(sides) {
             let Some(function) = function else { continue };
-            *bound = self.new_scalar();
-            self.function(function.clone(), driver, *bound);
-            self.row(passive, *bound, sign);
+            let register = self.new_scalar();
+            self.function(function.clone(), driver, register);
+            self.row(passive, register, sign);
+            *bound = Some(register);
         }
         let output = self.limit_output(Signal::Output(id, 0));
         let [lower, upper] = bounds;
@@ -145,9 +149,9 @@ impl Compiler<'_> {
 
     /// The register of an output of a limit component: the coordinate's own if the output is its
     /// effective value, otherwise a new one.
-    fn limit_output(&mut self, output: Signal) -> u32 {
+    fn limit_output(&mut self, output: Signal) -> Number {
         match self.effective.get(&output) {
-            Some(&id) => self.model.stored_range(id).start as u32,
+            Some(&id) => self.own(id),
             None => self.new_scalar(),
         }
     }
@@ -159,16 +163,16 @@ impl Compiler<'_> {
             Swinging::Orientation(source) => {
                 let scalar = self.scalar(*source);
                 let first = self.register(scalar);
-                inputs.extend(first..first + 4);
+                inputs.extend((0..4).map(|k| Number(first.0 + k)));
                 let output = Signal::Output(id, 0);
                 let first = match self.effective.get(&output) {
-                    Some(&id) => self.model.stored_range(id).start as u32,
+                    Some(&id) => self.own(id),
                     None => {
                         self.program.code.scalars += 4;
-                        self.program.code.scalars as u32 - 4
+                        Number::new(self.program.code.scalars - 4)
                     }
                 };
-                outputs.extend(first..first + 4);
+                outputs.extend((0..4).map(|k| Number(first.0 + k)));
             }
             Swinging::Angles(..) | Swinging::Directions(..) => {
                 for (k, (_, _, source)) in
@@ -180,7 +184,7 @@ impl Compiler<'_> {
                 }
             }
         }
-        let rows: Vec<u32> = (0..component.rows()).map(|_| self.new_scalar()).collect();
+        let rows: Vec<Number> = (0..component.rows()).map(|_| self.new_scalar()).collect();
         self.program.code.rows.extend(&rows);
         let results = outputs.iter().map(|&register| Operand::Register(register)).collect();
         let call = ConeCall { component: component.clone(), inputs, outputs, rows };
@@ -191,7 +195,7 @@ impl Compiler<'_> {
     }
 
     /// Adds the limit row `sign · (value - bound) ≥ 0`.
-    pub(super) fn row(&mut self, value: u32, bound: u32, sign: f64) {
+    pub(super) fn row(&mut self, value: Number, bound: Number, sign: f64) {
         let function = FunctionOfSeveral::Linear { slopes: vec![sign, -sign], intercept: 0.0 };
         let inputs = [value, bound].map(Operand::Register);
         let row = self.combine(&function, &inputs);
@@ -207,7 +211,7 @@ impl Compiler<'_> {
                 continue;
             }
             let (lower, upper) = coordinate.range.bounds();
-            let value = self.model.stored_range(id).start as u32;
+            let value = self.own(id);
             for (bound, sign) in [(lower, 1.0), (upper, -1.0)] {
                 if bound.is_finite() {
                     let bound = self.register(Operand::Constant(bound));
@@ -226,7 +230,7 @@ impl Compiler<'_> {
         if constants.len() == inputs.len() {
             return Operand::Constant(function.apply(&constants));
         }
-        let inputs: Vec<u32> = inputs.iter().map(|&s| self.register(s)).collect();
+        let inputs: Vec<Number> = inputs.iter().map(|&s| self.register(s)).collect();
         let output = self.new_scalar();
         self.program.code.combines.push(CombineCall { function: function.clone(), inputs });
         let function = self.program.code.combines.len() as u32 - 1;
