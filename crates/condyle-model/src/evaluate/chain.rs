@@ -4,15 +4,12 @@ use super::instruction::{Code, Frame, Step};
 use super::pose::Pose;
 use crate::component::{Law, MOST_LAW_INPUTS, shear};
 use condyle_math::{Affine, Mat3, Quat, Scalar, Twist, Vec3};
-use std::ops::Range;
 
 /// An observer that is called for every elementary motion of a chain, to record its generator.
 ///
 /// Twists are expressed in the base frame of the chain (the world, for segments), per unit of the
 /// scalar that drives the motion.
 pub(super) trait Recorder<S> {
-    /// The step at this position in [`Code::steps`] begins.
-    fn begin(&mut self, step: usize);
     /// A rotation or translation by one scalar in `frame`, whose twist is `inside` expressed in
     /// `frame` and `outside` expressed in the base; the latter only if `frame` is rigid.
     fn motion(
@@ -35,8 +32,6 @@ pub(super) trait Recorder<S> {
 pub(super) struct Silent;
 
 impl<S> Recorder<S> for Silent {
-    #[inline(always)]
-    fn begin(&mut self, _: usize) {}
     #[inline(always)]
     fn motion(&mut self, _: Affine<S>, _: impl FnOnce() -> Twist<S>, _: impl FnOnce() -> Twist<S>) {
     }
@@ -65,15 +60,13 @@ pub(super) fn power<S: Scalar>(rotation: Mat3<S>, exponent: f64) -> Mat3<S> {
 #[inline(always)]
 pub(super) fn run_chain<S: Scalar, R: Recorder<S>>(
     code: &Code,
-    steps: Range<u32>,
+    steps: &[Step],
     base: Affine<S>,
     pose: &Pose<S>,
     recorder: &mut R,
 ) -> Affine<S> {
     let mut frame = base;
-    let steps = steps.start as usize..steps.end as usize;
-    for (position, step) in steps.clone().zip(&code.steps[steps]) {
-        recorder.begin(position);
+    for step in steps {
         let (r, origin) = (frame.linear, frame.translation);
         match *step {
             Step::Shift(offset) => frame = frame.shifted(offset.cast()),

@@ -3,12 +3,16 @@
 //!
 //! The plan walks the instructions in the order in which they run. For every scalar it records
 //! which directions (tangents of the coordinates) it depends on, with a slot for each derivative;
-//! for every transform which directions move it, with the index of each twist. Each instruction and each
-//! step of a chain has its own terms, which evaluation reads without a search.
+//! for every transform which directions move it, with the index of each twist. Each instruction has its
+//! own terms, which evaluation reads without a search: the motions of a step are those of its
+//! [drivers](Step::drivers), in their order.
 
+#[cfg(doc)]
+use super::instruction::Step;
 use super::instruction::{Code, Driver, Frame, Instruction, Number};
 use crate::component::Swinging;
 use std::ops::Range;
+use std::slice::Iter;
 
 /// The initial value of the sum to which a term is added.
 #[derive(Clone, Copy, Debug)]
@@ -46,11 +50,10 @@ pub(super) struct DerivativePlan {
     pub tangents: usize,
     pub twists: usize,
     pub derivatives: usize,
-    /// For each step of chains, and for each instruction, its first unit motion.
-    pub step_units: Vec<u32>,
-    pub instruction_units: Vec<u32>,
-    /// For each unit motion where its terms begin; one entry more than there are.
-    unit_offsets: Vec<u32>,
+    /// For each instruction its first unit motion and its first term.
+    motions: Vec<(u32, u32)>,
+    /// For each unit motion the number of its terms.
+    counts: Vec<u32>,
     terms: Vec<Term>,
     /// For each instruction where its scalar terms begin; one entry more than there are.
     scalar_offsets: Vec<u32>,
@@ -77,10 +80,11 @@ impl DerivativePlan {
         &self.entries[between(&self.entry_offsets, frame.index())]
     }
 
-    /// The terms of a unit motion.
+    /// The numbers of terms of the unit motions of an instruction and of those after it, and the terms.
     #[inline(always)]
-    pub(super) fn unit_terms(&self, unit: usize) -> &[Term] {
-        &self.terms[between(&self.unit_offsets, unit)]
+    pub(super) fn motions(&self, instruction: usize) -> (Iter<'_, u32>, Iter<'_, Term>) {
+        let (unit, term) = self.motions[instruction];
+        (self.counts[unit as usize..].iter(), self.terms[term as usize..].iter())
     }
 
     /// The terms of the scalars that an instruction computes.
@@ -126,8 +130,6 @@ pub(super) fn plan(
         tangents,
         derivatives: 1,
         deforming: vec![false; code.transforms],
-        step_units: vec![0; code.steps.len()],
-        unit_offsets: vec![0],
         ..Default::default()
     };
     // (direction, slot) of every scalar register.
@@ -139,7 +141,7 @@ pub(super) fn plan(
     let mut transforms: Vec<Vec<(u32, u32)>> = vec![vec![]; code.transforms];
     for instruction in &code.instructions {
         plan.scalar_offsets.push(plan.scalar_terms.len() as u32);
-        plan.instruction_units.push(plan.next_unit());
+        plan.motions.push((plan.counts.len() as u32, plan.terms.len() as u32));
         match instruction {
             Instruction::Function { input, output, .. } => {
                 scalars[output.index()] = plan.scalar(0, &[scalars[input.index()].clone()]);
@@ -198,10 +200,9 @@ pub(super) fn plan(
             Instruction::Chain { base, first, end, output, .. } => {
                 let mut moving = inherit(&transforms[base.index()]);
                 let mut deforming = plan.deforming[base.index()];
-                for step in *first as usize..*end as usize {
-                    let (drivers, deforms) = code.steps[step].drivers(code);
+                for step in &code.steps[*first as usize..*end as usize] {
+                    let (drivers, deforms) = step.drivers(code);
                     deforming |= deforms;
-                    plan.step_units[step] = plan.next_unit();
                     for driver in drivers {
                         // Everything after the first step that is not rigid is not rigid either.
                         if let Driver::Frame(frame) = driver {
@@ -261,10 +262,6 @@ impl DerivativePlan {
         made
     }
 
-    fn next_unit(&self) -> u32 {
-        self.unit_offsets.len() as u32 - 1
-    }
-
     /// Plans the motions of a driver.
     fn units(
         &mut self,
@@ -314,7 +311,7 @@ impl DerivativePlan {
             };
             self.terms.push(Term { twist, derivative, start });
         }
-        self.unit_offsets.push(self.terms.len() as u32);
+        self.counts.push(dependencies.len() as u32);
     }
 
     fn close(

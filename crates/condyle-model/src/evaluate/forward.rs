@@ -65,8 +65,9 @@ impl Program {
     ) -> Result<(), SizeMismatch> {
         self.load(requested, mode, pose)?;
         for stage in &self.code.stages {
+            let scalars = &mut pose.scalars[..];
             for instruction in &self.code.instructions[stage.scalars.clone()] {
-                self.run_scalar(instruction, mode, pose);
+                self.run_scalar(instruction, mode, scalars);
             }
             pose.take_turns(&self.code.turns, stage.turns.clone());
             self.run_transforms(&self.code.instructions[stage.transforms.clone()], pose);
@@ -75,7 +76,7 @@ impl Program {
     }
 
     /// Runs instructions that compute transforms.
-    #[inline(always)]
+    #[inline]
     fn run_transforms<S: Scalar>(&self, mut rest: &[Instruction], pose: &mut Pose<S>) {
         // The last frame, kept in registers: most chains have the previous one as their base, and
         // reading it back from memory right after writing it would cause a store-forwarding stall.
@@ -92,7 +93,8 @@ impl Program {
                 Instruction::Chain { base, shift, first, end, output } => {
                     let from = if base == last.0 { last.1 } else { pose.transforms[base.index()] };
                     let from = from.shifted(shift.cast());
-                    let frame = run_chain(&self.code, first..end, from, pose, &mut Silent);
+                    let steps = &self.code.steps[first as usize..end as usize];
+                    let frame = run_chain(&self.code, steps, from, pose, &mut Silent);
                     pose.transforms[output.index()] = frame;
                     last = (output, frame);
                 }
@@ -146,9 +148,8 @@ impl Program {
         &self,
         instruction: &Instruction,
         mode: Mode,
-        pose: &mut Pose<S>,
+        scalars: &mut [S],
     ) {
-        let scalars = &mut pose.scalars;
         match *instruction {
             Instruction::Function { function, input, output } => {
                 let value = self.code.functions[function as usize].apply(scalars[input.index()]);

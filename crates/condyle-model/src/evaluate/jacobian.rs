@@ -101,12 +101,17 @@ impl Program {
         SizeMismatch::check("the Jacobian", self.plan.derivatives, jacobian.derivatives.len())?;
         self.load(requested, Mode::Open, pose)?;
         for stage in &self.code.stages {
-            for number in stage.scalars.clone() {
-                self.differentiate_scalar(number, pose, &mut jacobian.derivatives);
+            let instructions = &self.code.instructions;
+            for (number, instruction) in
+                stage.scalars.clone().zip(&instructions[stage.scalars.clone()])
+            {
+                self.differentiate_scalar(number, instruction, pose, &mut jacobian.derivatives);
             }
             pose.take_turns(&self.code.turns, stage.turns.clone());
-            for number in stage.transforms.clone() {
-                self.differentiate_transform(number, pose, jacobian);
+            for (number, instruction) in
+                stage.transforms.clone().zip(&instructions[stage.transforms.clone()])
+            {
+                self.differentiate_transform(number, instruction, pose, jacobian);
             }
         }
         Ok(())
@@ -114,8 +119,15 @@ impl Program {
 
     /// Runs an instruction that computes a transform and records the twists of its motions.
     #[inline(always)]
-    fn differentiate_transform(&self, number: usize, pose: &mut Pose, jacobian: &mut Jacobian) {
+    fn differentiate_transform(
+        &self,
+        number: usize,
+        instruction: &Instruction,
+        pose: &mut Pose,
+        jacobian: &mut Jacobian,
+    ) {
         let plan = &self.plan;
+        let (counts, terms) = plan.motions(number);
         let mut tape = Tape {
             twists: &mut jacobian.twists,
             strains: &mut jacobian.strains,
@@ -123,9 +135,10 @@ impl Program {
             derivatives: &jacobian.derivatives,
             scalars: &pose.scalars,
             plan,
-            unit: plan.instruction_units[number] as usize,
+            counts,
+            terms,
         };
-        match self.code.instructions[number] {
+        match *instruction {
             Instruction::BallAt { base, shift, orientation, output } => {
                 tape.deforming = plan.deforming[output.index()];
                 let at = pose.transforms[base.index()].shifted(shift);
@@ -141,7 +154,8 @@ impl Program {
             Instruction::Chain { base, shift, first, end, output } => {
                 tape.deforming = plan.deforming[output.index()];
                 let from = pose.transforms[base.index()].shifted(shift);
-                let end = run_chain(&self.code, first..end, from, pose, &mut tape);
+                let steps = &self.code.steps[first as usize..end as usize];
+                let end = run_chain(&self.code, steps, from, pose, &mut tape);
                 pose.transforms[output.index()] = end;
             }
             Instruction::Contact { contact } => {
@@ -157,14 +171,20 @@ impl Program {
 
     /// Runs a scalar instruction and applies the chain rule to it.
     #[inline(always)]
-    fn differentiate_scalar(&self, number: usize, pose: &mut Pose, derivatives: &mut [f64]) {
+    fn differentiate_scalar(
+        &self,
+        number: usize,
+        instruction: &Instruction,
+        pose: &mut Pose,
+        derivatives: &mut [f64],
+    ) {
         let terms = self.plan.scalar_terms(number);
         let mut add = |term: &ScalarTerm, slope: f64| {
             let addend = slope * derivatives[term.from as usize];
             let to = &mut derivatives[term.to as usize];
             *to = if term.first { addend } else { *to + addend };
         };
-        match self.code.instructions[number] {
+        match *instruction {
             Instruction::Function { function, input, output } => {
                 let x = pose.scalars[input.index()];
                 let (value, slope) = self.code.functions[function as usize].value_and_slope(x);

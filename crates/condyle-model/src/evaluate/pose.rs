@@ -90,14 +90,14 @@ impl<S: Scalar> Pose<S> {
     }
 
     /// Computes sine and cosine of angles in one loop, which the compiler can vectorise.
-    #[inline(always)]
     pub(super) fn take_turns(&mut self, registers: &[Number], of: Range<usize>) {
-        let angles = &mut self.angles[of.clone()];
+        let (registers, angles) = (&registers[of.clone()], &mut self.angles[of.clone()]);
+        let turns = &mut self.turns[of];
         // Gathered first, so that the second loop runs over contiguous memory.
-        for (angle, &register) in angles.iter_mut().zip(&registers[of.clone()]) {
+        for (angle, &register) in angles.iter_mut().zip(registers) {
             *angle = self.scalars[register.index()];
         }
-        for (turn, angle) in self.turns[of].iter_mut().zip(angles) {
+        for (turn, angle) in turns.iter_mut().zip(&*angles) {
             *turn = angle.sin_cos();
         }
     }

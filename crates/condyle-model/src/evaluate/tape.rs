@@ -11,7 +11,7 @@ use condyle_math::{Affine, Dual, Mat3, Twist, Vec3};
 /// Accumulates unit motions to the twists of directions, in the order of the derivative plan.
 ///
 /// A unit motion is the generator per unit of a scalar; its contribution to the twist of a
-/// direction is multiplied by ∂scalar/∂direction. The plan knows the unit motions of each step.
+/// direction is multiplied by ∂scalar/∂direction. The plan knows the unit motions of each instruction.
 pub(super) struct Tape<'a> {
     pub twists: &'a mut [Twist],
     pub strains: &'a mut [Mat3],
@@ -20,28 +20,22 @@ pub(super) struct Tape<'a> {
     pub derivatives: &'a [f64],
     pub scalars: &'a [f64],
     pub plan: &'a DerivativePlan,
-    /// The next unit motion.
-    pub unit: usize,
+    /// The numbers of terms of the unit motions to come, and the terms.
+    pub counts: std::slice::Iter<'a, u32>,
+    pub terms: std::slice::Iter<'a, Term>,
 }
 
-impl<'a> Tape<'a> {
-    /// The terms of the next unit motion.
-    #[inline(always)]
-    fn next(&mut self) -> &'a [Term] {
-        let terms = self.plan.unit_terms(self.unit);
-        self.unit += 1;
-        terms
-    }
-
+impl Tape<'_> {
     #[inline(always)]
     fn emit(&mut self, twist: impl FnOnce() -> Twist) {
         // No direction moves this scalar: its twist need not be computed.
-        let terms = self.next();
-        if terms.is_empty() {
+        let count = self.counts.next().copied().unwrap_or(0);
+        if count == 0 {
             return;
         }
         let unit = twist();
-        for term in terms {
+        for _ in 0..count {
+            let Some(term) = self.terms.next() else { return };
             let addend = unit * self.derivatives[term.derivative as usize];
             self.twists[term.twist as usize] = match term.start {
                 Start::Zero => addend,
@@ -53,12 +47,13 @@ impl<'a> Tape<'a> {
 
     /// The same as `emit`, for a chain whose twists have strains.
     fn emit_rate(&mut self, rate: impl FnOnce() -> Rate) {
-        let terms = self.next();
-        if terms.is_empty() {
+        let count = self.counts.next().copied().unwrap_or(0);
+        if count == 0 {
             return;
         }
         let (unit, unit_strain) = rate().split();
-        for term in terms {
+        for _ in 0..count {
+            let Some(term) = self.terms.next() else { return };
             let factor = self.derivatives[term.derivative as usize];
             let (twist, strain) = match term.start {
                 Start::Zero => (Twist::zero(), NO_STRAIN),
@@ -145,11 +140,6 @@ impl Tape<'_> {
 }
 
 impl Recorder<f64> for Tape<'_> {
-    #[inline(always)]
-    fn begin(&mut self, step: usize) {
-        self.unit = self.plan.step_units[step] as usize;
-    }
-
     #[inline(always)]
     fn motion(
         &mut self,
