@@ -1,10 +1,10 @@
 //! One recording on its way through a tracker.
 
+use super::jump::Judged;
 use super::{Faulty, Request, Swap, Tracking, UnusedMarkers, Verdict, posture, verdict};
-use crate::matching::match_markers;
+use crate::matching::{Match, match_markers};
 use condyle_diagnostics::{Diagnostic, Error};
-use condyle_math::Mat3;
-use condyle_model::{Mode, Model, Pose};
+use condyle_model::Model;
 use condyle_motion::{Motion, Recording};
 use condyle_track::robust::{self, Corrected, Repairs};
 use condyle_track::{
@@ -13,9 +13,6 @@ use condyle_track::{
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::{Arc, Mutex};
-
-/// A segment that turns by more than this from one frame to the next has jumped: 60°.
-const JUMP: f64 = std::f64::consts::FRAC_PI_3;
 
 /// A recording whose markers are matched to a model, ready to be solved.
 #[derive(Clone, Debug)]
@@ -29,6 +26,16 @@ pub struct Job<'a> {
     threads: Option<usize>,
     robust: bool,
     max_rms: f64,
+    left_out: LeftOut,
+}
+
+/// Markers that both sides have and that are not used all the same.
+#[derive(Clone, Debug, Default)]
+struct LeftOut {
+    /// Labels that no frame shows.
+    never_seen: Vec<String>,
+    /// Markers of the model of weight 0.
+    without_weight: Vec<String>,
 }
 
 impl<'a> Job<'a> {
@@ -50,24 +57,33 @@ impl<'a> Job<'a> {
         let renamed = request.renamed(&model, &recording.labels, &mut warnings);
         let (matches, guesses) = match_markers(&model, &renamed);
         warnings.extend(guesses);
-        let mut targets = Targets::default();
-        let (mut labels, mut markers) = (vec![], vec![]);
-        for found in matches {
-            let name = &model.markers()[found.marker].name;
-            let weight = weights[found.marker];
-            if weight > 0.0 {
-                targets.markers.push(MarkerTarget { marker: found.marker, weight });
-                labels.push(found.label);
-                markers.push(name.clone());
-            }
-        }
         if let Some(weights) = &request.marker_weights {
-            warnings.extend(unused_tasks(weights, &markers));
+            let names = |found: &Match| model.markers()[found.marker].name.clone();
+            warnings.extend(unused_tasks(weights, &matches.iter().map(names).collect::<Vec<_>>()));
         }
-        if targets.markers.is_empty() {
+        let (mut weighed, light): (Vec<Match>, Vec<Match>) =
+            matches.into_iter().partition(|found| weights[found.marker] > 0.0);
+        if weighed.is_empty() {
             return Err(no_common_markers(&model, recording));
         }
         let frames = frames_in(recording, request.time_range)?;
+        let (seen, hidden): (Vec<Match>, Vec<Match>) =
+            weighed.iter().copied().partition(|found| is_seen(recording, &frames, found.label));
+        // Where no marker is ever seen, every frame says so.
+        let mut left_out = LeftOut::default();
+        if !seen.is_empty() {
+            let label = |found: &Match| recording.labels[found.label].clone();
+            left_out.never_seen = hidden.iter().map(label).collect();
+            weighed = seen;
+        }
+        let name = |found: &Match| model.markers()[found.marker].name.clone();
+        left_out.without_weight = light.iter().map(name).collect();
+        let target =
+            |found: &Match| MarkerTarget { marker: found.marker, weight: weights[found.marker] };
+        let mut targets =
+            Targets { markers: weighed.iter().map(target).collect(), ..Targets::default() };
+        let markers = weighed.iter().map(name).collect();
+        let labels = weighed.iter().map(|found| found.label).collect();
         let times = &recording.times[frames.clone()];
         request.add_coordinates(&model, times, &mut targets, &mut warnings);
         posture::add(&model, &mut targets.postures);
@@ -77,7 +93,18 @@ impl<'a> Job<'a> {
         let rules = Rules { limits: request.limits, ..Rules::default() };
         let tracker = Arc::new(Tracker::new(model, targets, rules));
         let max_rms = request.max_rms;
-        Ok(Self { tracker, recording, markers, labels, frames, warnings, threads, robust, max_rms })
+        Ok(Self {
+            tracker,
+            recording,
+            markers,
+            labels,
+            frames,
+            warnings,
+            threads,
+            robust,
+            max_rms,
+            left_out,
+        })
     }
 
     /// The tracker, which a [`Stream`](super::Stream) can share.
@@ -125,8 +152,20 @@ impl<'a> Job<'a> {
             }));
         }
         progress(answers.len(), answers.len());
-        let trust = self.trust(&Corrected { recorded: &recorded, repairs: &repairs }, &answers);
-        let jumps = self.jumps(&answers).map(|frame| first + frame).collect();
+        let corrected = Corrected { recorded: &recorded, repairs: &repairs };
+        let trust = self.trust(&corrected, &answers);
+        let label = |&label: &usize| &*self.recording.labels[label];
+        let judged = Judged {
+            tracker: &self.tracker,
+            recorded: &corrected,
+            answers: &answers,
+            trust: &trust,
+            labels: self.labels.iter().map(label).collect(),
+            swaps: &swaps,
+            faulty: &faulty,
+            first,
+        };
+        let jumps = judged.jumps();
         let motion = Motion {
             times: self.recording.times[self.frames.clone()].to_vec(),
             frames: answers.iter().map(|a| a.coordinates.clone()).collect(),
@@ -135,7 +174,12 @@ impl<'a> Job<'a> {
         let (frames, mut warnings) = (self.frames.clone(), self.warnings.clone());
         warnings.extend(self.robust.then(|| few_frames(frames.len())).flatten());
         let model = self.tracker.model();
-        let unused = UnusedMarkers::of(model, &self.recording.labels, &markers, &labels);
+        let LeftOut { never_seen, without_weight } = self.left_out.clone();
+        let unused = UnusedMarkers {
+            never_seen,
+            without_weight,
+            ..UnusedMarkers::of(model, &self.recording.labels, &markers, &labels)
+        };
         let verdict = Verdict::PLAUSIBLE;
         let mut tracking = Tracking {
             motion,
@@ -191,34 +235,6 @@ impl<'a> Job<'a> {
         in_parallel(self.threads, chunks.len(), || Scratch::new(tracker), judge).concat()
     }
 
-    /// The frames in which a segment with markers has turned by more than [`JUMP`] since the one before.
-    fn jumps(&self, answers: &[FrameAnswer]) -> impl Iterator<Item = usize> {
-        let (model, program) = (self.tracker.model(), self.tracker.program());
-        let targets = self.tracker.targets().markers.iter();
-        let mut segments: Vec<_> =
-            targets.filter_map(|t| model.markers()[t.marker].segment).collect();
-        segments.sort_unstable_by_key(|segment| segment.index());
-        segments.dedup();
-        let mut pose = Pose::new(program);
-        let mut before: Vec<Mat3> = vec![];
-        let mut jumps = vec![];
-        for (frame, answer) in answers.iter().enumerate() {
-            if program.evaluate(&answer.coordinates, Mode::Open, &mut pose).is_err() {
-                continue;
-            }
-            let now: Vec<Mat3> = segments.iter().map(|&s| pose.segment(s).linear).collect();
-            // The trace of a rotation is 1 + 2 cos of its angle.
-            let turned = |(a, b): (&Mat3, &Mat3)| {
-                a.x.dot(b.x) + a.y.dot(b.y) + a.z.dot(b.z) < 1.0 + 2.0 * JUMP.cos()
-            };
-            if before.iter().zip(&now).any(turned) {
-                jumps.push(frame);
-            }
-            before = now;
-        }
-        jumps.into_iter()
-    }
-
     fn pass(
         &self,
         recorded: &dyn Recorded,
@@ -264,6 +280,11 @@ fn few_frames(frames: usize) -> Option<Diagnostic> {
     );
     let said = || Diagnostic::warning("track/unknown-offsets", message);
     (frames < robust::FEWEST_FRAMES).then(said)
+}
+
+/// Whether a label is seen in any of the frames.
+fn is_seen(recording: &Recording, frames: &Range<usize>, label: usize) -> bool {
+    frames.clone().any(|frame| recording.position(frame, label).is_some())
 }
 
 fn no_common_markers(model: &Model, recording: &Recording) -> Error {

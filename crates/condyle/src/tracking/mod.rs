@@ -6,7 +6,9 @@
 
 mod cloud;
 mod job;
+mod jump;
 pub(crate) mod posture;
+mod remarks;
 mod report;
 mod request;
 #[cfg(any(feature = "document", feature = "opensim"))]
@@ -22,6 +24,8 @@ pub use condyle_track::{
     Rules, Scratch, Stream, Targets, Tracker, Trust, Wanted,
 };
 pub use job::Job;
+pub use jump::{Jump, JumpCause};
+pub use remarks::BeyondRange;
 pub use report::{Determination, FailedFrame, MarkerErrors, Report, Summary};
 pub use request::{CoordinateRequest, CoordinateValue, PostureRequest, Request};
 pub use unused::{Unused, UnusedMarkers};
@@ -60,9 +64,8 @@ pub struct Tracking {
     pub trust: Vec<Vec<Trust>>,
     /// Coordinates that move no marker that was used.
     pub unmoved: Vec<CoordinateId>,
-    /// Frames of the recording, from 0, in which a segment with markers turns by more than 60° from the
-    /// frame before.
-    pub jumps: Vec<usize>,
+    /// Where a segment with markers turns by more than 60° from one frame to the next, and why.
+    pub jumps: Vec<Jump>,
     /// Whether the fit can be believed.
     pub verdict: Verdict,
 }
