@@ -19,10 +19,10 @@ use std::sync::{Arc, Mutex};
 pub struct Job<'a> {
     tracker: Arc<Tracker>,
     recording: &'a Recording,
-    markers: Vec<String>,
-    labels: Vec<usize>,
+    pub(super) markers: Vec<String>,
+    pub(super) labels: Vec<usize>,
     frames: Range<usize>,
-    warnings: Vec<Diagnostic>,
+    pub(super) warnings: Vec<Diagnostic>,
     threads: Option<usize>,
     robust: bool,
     max_rms: f64,

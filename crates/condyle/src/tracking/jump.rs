@@ -182,9 +182,8 @@ impl Judged<'_> {
         for (seen, f) in seen.iter_mut().zip([frame.saturating_sub(2), frame - 1, frame]) {
             self.recorded.positions(f, seen);
         }
-        let place = |at: usize, target: usize| {
-            seen[at].get(target).copied().flatten().map(Vec3::from)
-        };
+        let place =
+            |at: usize, target: usize| seen[at].get(target).copied().flatten().map(Vec3::from);
         let left_out = |target: usize| {
             let of = |faulty: &&Faulty| faulty.label == self.labels[target];
             let mut faulty = self.faulty.iter().filter(of).filter(|f| f.fault.is_left_out());
@@ -236,4 +235,98 @@ fn turns(kind: CoordinateKind) -> bool {
 fn turn(a: &Mat3, b: &Mat3) -> f64 {
     let trace = a.x.dot(b.x) + a.y.dot(b.y) + a.z.dot(b.z);
     (0.5 * (trace - 1.0)).clamp(-1.0, 1.0).acos()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use condyle_model::{Model, ModelBuilder};
+    use condyle_track::robust::Fault;
+    use condyle_track::{MarkerTarget, Rules, Targets};
+
+    /// A hinge with three markers.
+    fn hinge() -> Model {
+        let mut b = ModelBuilder::new("arm");
+        let arm = b.segment("arm", None);
+        b.hinge("elbow", arm, "angle", Vec3::Z);
+        for (name, at) in [("a", Vec3::X), ("b", Vec3::Y), ("c", -Vec3::X)] {
+            b.marker(name, Some(arm), at);
+        }
+        b.build().unwrap()
+    }
+
+    /// The only jump of three frames, the last of which is turned by 1.5 rad, where the markers move with the
+    /// arm, or stay, and some are not seen in the last.
+    fn jump(
+        status: FrameStatus,
+        trust: Trust,
+        moving: bool,
+        hidden: &[usize],
+        swaps: &[Swap],
+        faulty: &[Faulty],
+    ) -> Jump {
+        let targets = (0..3).map(|marker| MarkerTarget { marker, weight: 1.0 });
+        let targets = Targets { markers: targets.collect(), ..Targets::default() };
+        let tracker = Tracker::new(hinge(), targets, Rules::default());
+        let answer = |angle: f64, status| FrameAnswer { status, ..FrameAnswer::start(&[angle]) };
+        let solved = FrameStatus::Solved;
+        let answers = [answer(0.0, solved), answer(0.1, solved), answer(1.6, status)];
+        let recorded = |frame: usize, seen: &mut Vec<Option<[f64; 3]>>| {
+            let angle = if moving { answers[frame].coordinates[0] } else { 0.0 };
+            let (s, c) = angle.sin_cos();
+            let places = [[c, s, 0.0], [-s, c, 0.0], [-c, -s, 0.0]].into_iter().enumerate();
+            seen.clear();
+            seen.extend(places.map(|(i, p)| (frame < 2 || !hidden.contains(&i)).then_some(p)));
+        };
+        let judged = Judged {
+            tracker: &tracker,
+            recorded: &recorded,
+            answers: &answers,
+            trust: &[vec![Trust::Determined], vec![Trust::Determined], vec![trust]],
+            labels: vec!["A", "B", "C"],
+            swaps,
+            faulty,
+            first: 10,
+        };
+        let jumps = judged.jumps();
+        assert_eq!(jumps.len(), 1);
+        jumps.into_iter().next().unwrap()
+    }
+
+    #[test]
+    fn a_jump_names_what_turned_and_the_likeliest_cause() {
+        let (solved, sure) = (FrameStatus::Solved, Trust::Determined);
+        let found = jump(solved, sure, false, &[], &[], &[]);
+        assert_eq!((found.frame, &*found.segment), (12, "arm"));
+        // From 0.1 to 1.6 rad.
+        assert!((found.turn - 1.5).abs() < 1e-9);
+        assert_eq!(found.coordinate, Some(("angle".to_owned(), 1.5)));
+        assert_eq!(found.cause, JumpCause::Unknown);
+        assert_eq!(
+            found.to_string(),
+            "frame 12: `arm` turns by 86°, `angle` by 86° (cause not known)"
+        );
+        let cause = |status, trust, moving, hidden: &[usize], swaps: &[Swap], faulty: &[Faulty]| {
+            jump(status, trust, moving, hidden, swaps, faulty).cause
+        };
+        let lost = FrameStatus::Uncertain;
+        let angle = vec!["angle".to_owned()];
+        assert_eq!(cause(lost, sure, true, &[1], &[], &[]), JumpCause::NotSolved(lost));
+        let b = JumpCause::Missing(vec!["B".to_owned()]);
+        assert_eq!(cause(solved, Trust::Held, true, &[1], &[], &[]), b);
+        // A chord of 1.5 rad at 1 m: 2 sin 0.75 = 1.3633 m.
+        let at_once = cause(solved, Trust::Held, true, &[], &[], &[]);
+        assert!(matches!(at_once, JumpCause::MovesAtOnce(_, 1363)), "{at_once}");
+        let held = JumpCause::NotDetermined(angle.clone());
+        assert_eq!(cause(solved, Trust::Weak, false, &[], &[], &[]), held);
+        let limit = JumpCause::AtLimit(angle);
+        assert_eq!(cause(solved, Trust::AtLimit, false, &[], &[], &[]), limit);
+        let swap = |frames| Swap { labels: vec!["B".into(), "X".into()], frames };
+        let swapped = JumpCause::Exchanged(vec!["B".into(), "X".into()]);
+        assert_eq!(cause(solved, sure, true, &[1], &[swap(12..20)], &[]), swapped);
+        assert_eq!(cause(solved, sure, false, &[], &[swap(3..12)], &[]), swapped);
+        assert_eq!(cause(solved, sure, false, &[], &[swap(3..11)], &[]), JumpCause::Unknown);
+        let ghost = |frames| Faulty { label: "B".into(), frames, fault: Fault::Elsewhere };
+        assert_eq!(cause(solved, sure, false, &[], &[], &[ghost(12..13)]), b);
+    }
 }

@@ -2,11 +2,13 @@
 //!
 //! A [`Request`] says what is tracked, by names. [`track`] does all at once; [`Job`] prepares it and
 //! solves it in a second step. What comes out is a [`Tracking`], summed up in a [`Report`]. Frames
-//! that come one by one are solved by a [`Stream`], over a [`Tracker`] that shares its model.
+//! that come one by one are solved by a [`Live`], which knows labels, or by the [`Stream`] below it, which
+//! knows marker targets; both own their share of the model.
 
 mod cloud;
 mod job;
 mod jump;
+mod live;
 pub(crate) mod posture;
 mod remarks;
 mod report;
@@ -25,6 +27,7 @@ pub use condyle_track::{
 };
 pub use job::Job;
 pub use jump::{Jump, JumpCause};
+pub use live::Live;
 pub use remarks::BeyondRange;
 pub use report::{Determination, FailedFrame, MarkerErrors, Report, Summary};
 pub use request::{CoordinateRequest, CoordinateValue, PostureRequest, Request};

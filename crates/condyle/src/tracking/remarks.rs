@@ -50,8 +50,9 @@ impl Tracking {
     /// without ends that leave the range of their file. A list that goes on does so under `key_2`, `key_3`.
     /// There is nothing where every coordinate is determined.
     pub fn remarks(&self, model: &Model) -> Vec<(String, String)> {
-        let percent = |share: f64| (100.0 * share).ceil();
-        let unmoved: Vec<String> = self.unmoved.iter().map(|&id| model.coordinate_key(id)).collect();
+        let percent = |share: f64| (100.0 * share).round().max(1.0);
+        let unmoved: Vec<String> =
+            self.unmoved.iter().map(|&id| model.coordinate_key(id)).collect();
         let all = self.determination(model);
         let unsure = all.iter().filter(|d| !d.is_sure() && !unmoved.contains(&d.coordinate));
         let unsure = unsure.map(|d| {

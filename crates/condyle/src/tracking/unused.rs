@@ -48,11 +48,7 @@ impl UnusedMarkers {
             });
             unused.collect()
         };
-        Self {
-            model: of(&model, &recording),
-            recording: of(&recording, &model),
-            ..Self::default()
-        }
+        Self { model: of(&model, &recording), recording: of(&recording, &model), ..Self::default() }
     }
 }
 
