@@ -5,7 +5,7 @@ use crate::failure::{Failure, warned};
 use crate::output;
 use clap::Args;
 use condyle::tracking::{Live, Request};
-use condyle::{Jacobian, Mode, Model, Observed, Pose, Program, open};
+use condyle::{Jacobian, Mode, Model, Pose, Program, open};
 use serde_json::json;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
@@ -134,7 +134,7 @@ fn streamed(model: &Model, trial: &Path) -> Result<Streamed, Failure> {
         let live = Live::new(Arc::clone(&shared), &recording.labels, &Request::default());
         let mut live = live.map_err(|error| fail(&error))?;
         for (frame, least) in times.iter_mut().enumerate() {
-            let seen: Vec<_> = recording.frame(frame).iter().map(Observed::position).collect();
+            let seen: Vec<_> = recording.frame(frame).iter().map(|seen| seen.position()).collect();
             let start = Instant::now();
             let _ = black_box(live.next(&seen, &mut coordinates));
             *least = least.min(1e3 * start.elapsed().as_secs_f64());

@@ -1,7 +1,7 @@
 //! One recording on its way through a tracker.
 
 use super::jump::Judged;
-use super::{Faulty, Request, Swap, Tracking, UnusedMarkers, Verdict, posture, verdict};
+use super::{Faulty, Request, Swap, Tracking, UnusedMarkers, Variant, Verdict, posture, verdict};
 use crate::matching::{Match, match_markers};
 use condyle_diagnostics::{Diagnostic, Error};
 use condyle_model::Model;
@@ -14,10 +14,14 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::{Arc, Mutex};
 
+/// The solver's tolerance for frames whose unit is wrong.
+const ROUGHLY: f64 = 1e-2;
+
 /// A recording whose markers are matched to a model, ready to be solved.
 #[derive(Clone, Debug)]
 pub struct Job<'a> {
     tracker: Arc<Tracker>,
+    rules: Rules,
     recording: &'a Recording,
     pub(super) markers: Vec<String>,
     pub(super) labels: Vec<usize>,
@@ -95,6 +99,7 @@ impl<'a> Job<'a> {
         let max_rms = request.max_rms;
         Ok(Self {
             tracker,
+            rules,
             recording,
             markers,
             labels,
@@ -116,8 +121,26 @@ impl<'a> Job<'a> {
     /// again. `progress` is called with the number of frames that are done and their total, the last time
     /// when all are solved; what follows is how far they can be trusted.
     ///
-    /// Frames that cannot be solved are marked in their answer.
-    pub fn run(&self, mut progress: &mut (dyn FnMut(usize, usize) + Send)) -> Tracking {
+    /// Frames that cannot be solved are marked in their answer. Where the markers are ten times as far apart
+    /// as those of a body, or more, or that much nearer, the frames are solved roughly first; if another
+    /// unit explains it, that is the answer, with a warning.
+    pub fn run(&self, progress: &mut (dyn FnMut(usize, usize) + Send)) -> Tracking {
+        let tracker = &self.tracker;
+        if verdict::power_of_unit(tracker, self.recording, self.frames.clone(), &self.labels) != 0 {
+            let rules = Rules { tolerance: ROUGHLY, ..self.rules };
+            let rough = Tracker::new(Arc::clone(tracker.model()), tracker.targets().clone(), rules);
+            let rough = Self { tracker: Arc::new(rough), rules, robust: false, ..self.clone() };
+            let mut tracking = rough.solved(progress);
+            if let Some(Variant::Scaled(_)) = tracking.verdict.remedy {
+                let message = "the unit is wrong, so the frames were solved roughly";
+                tracking.warnings.push(Diagnostic::warning("track/rough", message));
+                return tracking;
+            }
+        }
+        self.solved(progress)
+    }
+
+    fn solved(&self, mut progress: &mut (dyn FnMut(usize, usize) + Send)) -> Tracking {
         let first = self.frames.start;
         let recorded = |frame: usize, seen: &mut Vec<Option<[f64; 3]>>| {
             let row = self.recording.frame(first + frame);
@@ -196,7 +219,8 @@ impl<'a> Job<'a> {
             jumps,
             verdict,
         };
-        let (verdict, odd) = verdict::judge(&self.tracker, self.recording, &tracking, self.max_rms);
+        let (verdict, odd) =
+            verdict::judge(&self.tracker, self.rules, self.recording, &tracking, self.max_rms);
         tracking.verdict = verdict;
         tracking.warnings.extend(odd);
         tracking
