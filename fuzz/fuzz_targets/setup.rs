@@ -11,7 +11,11 @@ fuzz_target!(|data: &[u8]| {
     let include = |left: &mut u32, name: &str| {
         // The text includes itself under other names, at most three times.
         *left = left.saturating_sub(1);
-        if *left == 0 || name.len() > 20 { Err("nothing there".to_owned()) } else { Ok(text.to_string()) }
+        if *left == 0 || name.len() > 20 {
+            Err("nothing there".to_owned())
+        } else {
+            Ok(text.to_string())
+        }
     };
     let mut left = 4;
     match setup::read(&text, &mut |name| include(&mut left, name)) {
