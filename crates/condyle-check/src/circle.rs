@@ -24,7 +24,7 @@ const SAME: f64 = 1e-9;
 /// let mut b = ModelBuilder::new("arm");
 /// let arm = b.segment("arm", None);
 /// let (_, angle) = b.hinge("shoulder", arm, "angle", Vec3::Z);
-/// b.coordinate_mut(angle).range = Range::new(-3.14, 3.14);
+/// b.coordinate_mut(angle).range = Range::new(-180f64.to_radians(), 180f64.to_radians());
 /// assert_eq!(condyle_check::circles(&b.build().unwrap()), [angle]);
 /// ```
 pub fn circles(model: &Model) -> Vec<CoordinateId> {

@@ -7,6 +7,7 @@ use condyle_math::{Quat, Vec3};
 use condyle_model::model::{Closure, Condition};
 use condyle_model::{CoordinateKind, Model, ModelBuilder, Range};
 use condyle_motion::{AngleUnit, Table};
+use std::f64::consts::PI;
 
 /// A thigh on a slide, and a knee whose patella follows it by 10 mm per radian.
 fn leg() -> ModelBuilder {
@@ -96,7 +97,7 @@ fn a_circle_has_no_end_unless_something_reads_the_angle() {
         let mut b = ModelBuilder::new("arm");
         let arm = b.segment("arm", None);
         let (set, turn) = b.hinge("shoulder", arm, "flexion", Vec3::Z);
-        b.coordinate_mut(turn).range = Range::new(-3.14, 3.14);
+        b.coordinate_mut(turn).range = Range::new(-PI, PI);
         if follower {
             let hand = b.segment("hand", Some(arm));
             let slide = b.joint_set("slide");

@@ -6,6 +6,7 @@ use condyle::math::Vec3;
 use condyle::tracking::{JumpCause, Request, Tracking, track};
 use condyle::{Mode, Model, ModelBuilder, Motion, Observed, Range, Recording};
 use condyle::{check, encode};
+use std::f64::consts::PI;
 
 /// An arm that turns about z, and a hand that turns about it, each with three markers.
 fn arm() -> Model {
@@ -13,7 +14,7 @@ fn arm() -> Model {
     let arm = b.segment("arm", None);
     let (_, turn) = b.hinge("shoulder", arm, "turn", Vec3::Z);
     // As files give it.
-    b.coordinate_mut(turn).range = Range::new(-3.14, 3.14);
+    b.coordinate_mut(turn).range = Range::new(-PI, PI);
     let hand = b.segment("hand", Some(arm));
     b.place_joint(hand, Vec3::new(0.6, 0.0, 0.0));
     b.hinge("wrist", hand, "bend", Vec3::Y);
@@ -55,13 +56,13 @@ fn value<'a>(remarks: &'a [(String, String)], key: &str) -> Option<&'a str> {
 
 #[test]
 fn an_angle_beyond_a_circle_is_said_and_no_check_finds_fault_with_it() {
-    // From 0 to 5 rad in steps of 0.05: past 3.14, by more than a half turn.
+    // From 0 to 5 rad in steps of 0.05: past π, by more than a half turn.
     let recording = seen(101, |frame| [0.05 * frame as f64, 0.2], |_, _| false);
     let tracking = tracked(&recording, &Request::default());
     let model = arm();
     let report = tracking.report(&model);
     let [beyond] = &report.beyond_range[..] else { panic!("{:?}", report.beyond_range) };
-    assert_eq!((&*beyond.coordinate, beyond.range), ("turn", [-3.14, 3.14]));
+    assert_eq!((&*beyond.coordinate, beyond.range), ("turn", [-PI, PI]));
     assert!((beyond.values[1] - 5.0).abs() < 1e-4, "{:?}", beyond.values);
     // 3.15 is frame 63.
     assert_eq!(beyond.frames, 101 - 63);
@@ -73,8 +74,8 @@ fn an_angle_beyond_a_circle_is_said_and_no_check_finds_fault_with_it() {
         [("beyond_range".to_owned(), value(&remarks, "beyond_range").unwrap().to_owned())]
     );
     let said = value(&remarks, "beyond_range").unwrap();
-    // 5 rad are 286.5 degrees, 3.14 are 179.9.
-    assert!(said.starts_with("turn (0 to 286.5 deg; range -179.9 to 179.9 deg"), "{said}");
+    // 5 rad are 286.5 degrees.
+    assert!(said.starts_with("turn (0 to 286.5 deg; range -180 to 180 deg"), "{said}");
     let format = Format::of_ending("mot").unwrap();
     let bytes =
         encode::motion(format, &model, &tracking.motion, "walk", None, &remarks).unwrap().value;

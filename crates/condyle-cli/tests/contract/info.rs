@@ -110,14 +110,14 @@ fn postures_and_circles_are_listed() {
          coordinate.angle = { range = [-180, 180] }\n\
          [joint.wrist]\ntype = \"hinge\"\nsegment = \"hand\"\naxis = [0, 1, 0]\n\
          coordinate.angle = {}\n\
-         [posture.bend]\nsum = { \"wrist/angle\" = 1 }\nrest = 10\nstiffness = 1e-5\n\
+         [posture.bend]\nsum = { \"wrist.angle\" = 1 }\nrest = 10\nstiffness = 1e-5\n\
          source = \"a paper\"\n\
-         [posture.both]\nsum = { \"shoulder/angle\" = -1, \"wrist/angle\" = 2.5 }\nrest = 0\nstiffness = 3e-5\n",
+         [posture.both]\nsum = { \"shoulder.angle\" = -1, \"wrist.angle\" = 2.5 }\nrest = 0\nstiffness = 3e-5\n",
     );
     let text = folder.condyle(&["info", "arm.toml"]).expect(0);
     assert!(text.contains("-180°  180°  clamped, a circle\n"), "{text}");
     let listed = "\npostures, which tracking holds: sum of coordinates, rest, stiffness\n  \
-                  bend  wrist/angle                       10°  1e-5\n  \
+                  bend  wrist/angle                        10°  1e-5\n  \
                   both  -shoulder/angle + 2.5 wrist/angle   0°  3e-5\n";
     assert!(text.contains(listed), "{text}");
     let info = folder.condyle(&["info", "arm.toml", "--json"]).json();
