@@ -7,6 +7,7 @@
 //!
 //! | file | what it checks |
 //! | --- | --- |
+//! | `circle` | rotations whose range has no ends; the other rules know them |
 //! | `range` | limits that cross, have no effect or look like degrees; defaults outside them |
 //! | `domain` | functions used beyond their knots |
 //! | `coupling` | followers driven out of their range, chains, coordinates that move nothing |
@@ -24,6 +25,7 @@
 //! A finding is an *error* if the model contradicts itself, or a motion leaves a range that is
 //! enforced; a *warning* if it is probably a mistake; a *note* if it is worth knowing.
 
+mod circle;
 mod closure;
 mod coupling;
 mod domain;
@@ -36,6 +38,7 @@ mod reach;
 mod rotation;
 mod symmetry;
 
+pub use circle::circles;
 use condyle_diagnostics::{Diagnostic, Severity, Subject, listed};
 use condyle_model::model::{CROSSING_RANGE, DEFAULT_OUTSIDE_RANGE, LOOKS_LIKE_DEGREES};
 use condyle_model::{CoordinateId, CoordinateKind, Mode, Model, Pose, Program};
@@ -105,6 +108,8 @@ struct Inspected<'m> {
     rest: Pose,
     /// The key of every coordinate.
     keys: Vec<String>,
+    /// Rotations whose range has no ends.
+    circles: Vec<CoordinateId>,
     reach: Reach<'m>,
 }
 
@@ -115,7 +120,8 @@ impl<'m> Inspected<'m> {
         // Both buffers are made for this program.
         let _ = program.evaluate(&model.defaults(), Mode::Open, &mut rest);
         let keys = model.coordinate_keys();
-        Self { model, program, rest, keys, reach: Reach::new(model) }
+        let circles = circles(model);
+        Self { model, program, rest, keys, circles, reach: Reach::new(model) }
     }
 
     fn key(&self, id: CoordinateId) -> String {

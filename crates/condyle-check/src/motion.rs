@@ -2,7 +2,7 @@
 //!
 //! Effective values are checked: a follower has the value that its leaders determine, and a column
 //! that differs from it is a separate finding. Blank cells, and coordinates without a column, are
-//! not checked.
+//! not checked. A rotation whose range is a circle has no end to be beyond.
 
 use super::closure::{Gap, gaps};
 use super::{amount, finding, length, listed, real_range, rounded, tolerance};
@@ -230,10 +230,12 @@ pub fn check(model: &Model, table: &Table) -> MotionCheck {
 /// Coordinates whose values come from the file: given ones, and followers of given ones.
 fn judged(model: &Model, given: &[CoordinateId]) -> Vec<bool> {
     let reach = super::reach::Reach::new(model);
+    let circles = super::circles(model);
     model
         .coordinate_ids()
         .map(|id| {
             real_range(model, id).is_some()
+                && !circles.contains(&id)
                 && match model.coordinate(id).follows {
                     None => given.contains(&id),
                     Some(_) => {

@@ -21,7 +21,7 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
         let odd = size(subject, id);
         let dummy = odd.is_some();
         findings.extend(odd);
-        if !dummy {
+        if !dummy && !subject.circles.contains(&id) {
             findings.extend(default(subject, id));
         }
     }

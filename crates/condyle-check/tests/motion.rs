@@ -7,6 +7,7 @@ use condyle_math::{Quat, Vec3};
 use condyle_model::model::{Closure, Condition};
 use condyle_model::{CoordinateKind, Model, ModelBuilder, Range};
 use condyle_motion::{AngleUnit, Table};
+use std::f64::consts::PI;
 
 /// A thigh on a slide, and a knee whose patella follows it by 10 mm per radian.
 fn leg() -> ModelBuilder {
@@ -87,6 +88,33 @@ fn frames_outside_ranges() {
     near(height.worst.by, 0.0025);
     assert_eq!(height.source, "the model's range (declared, not enforced)");
     assert!(check.findings[0].message.contains("most in frame 2 (0.02 s): -9°, 9° beyond 0°"));
+}
+
+#[test]
+fn a_circle_has_no_end_unless_something_reads_the_angle() {
+    let rows: [&[f64]; 2] = [&[0.9, 170.0], &[0.9, 190.0]];
+    let beyond = |follower: bool| {
+        let mut b = ModelBuilder::new("arm");
+        let arm = b.segment("arm", None);
+        let (set, turn) = b.hinge("shoulder", arm, "flexion", Vec3::Z);
+        b.coordinate_mut(turn).range = Range::new(-PI, PI);
+        if follower {
+            let hand = b.segment("hand", Some(arm));
+            let slide = b.joint_set("slide");
+            let glide = b.coordinate(slide, "glide", CoordinateKind::Translation);
+            let law = b.map(set, "law", turn, Function::linear(0.01, 0.0));
+            b.follow(glide, law);
+            let along = b.translate(slide, "along", glide, Vec3::X);
+            b.output(slide, hand, along);
+        }
+        let model = model(b);
+        let check = check(&model, &motion(&["height", "flexion"], &rows));
+        let circles = condyle_check::circles(&model).len();
+        (circles, check.violations.iter().map(|v| v.frame).collect::<Vec<_>>())
+    };
+    assert_eq!(beyond(false), (1, vec![]));
+    // The glide is 10 mm a radian: a whole turn moves the hand by 63 mm.
+    assert_eq!(beyond(true), (0, vec![1]));
 }
 
 #[test]

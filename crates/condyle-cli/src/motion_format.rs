@@ -40,6 +40,7 @@ pub(crate) fn encoded(
     motion: &Motion,
     name: &str,
     markers: Option<(&Recording, &[usize])>,
+    remarks: &[(String, String)],
 ) -> Result<Vec<u8>, Failure> {
-    Ok(warned(Path::new(name), encode::motion(format, model, motion, name, markers)?))
+    Ok(warned(Path::new(name), encode::motion(format, model, motion, name, markers, remarks)?))
 }

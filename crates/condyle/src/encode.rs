@@ -14,7 +14,9 @@ use condyle_motion::{AngleUnit, Motion, Recording, Table};
 /// A motion of a model: a table in degrees, a CSV in radians and metres, or a scene of plain bones in
 /// which recorded markers are shown beside the model's.
 ///
-/// `markers` gives a recording and which of its labels are shown.
+/// `markers` gives a recording and which of its labels are shown. `remarks` are keys and values of the
+/// header of a table, such as [`Tracking::remarks`](crate::tracking::Tracking::remarks); a CSV and a scene
+/// have no place for them.
 ///
 /// # Errors
 /// `format/not-written` if motions are not written in this format; what the writer finds wrong.
@@ -24,6 +26,7 @@ pub fn motion(
     motion: &Motion,
     name: &str,
     markers: Option<(&Recording, &[usize])>,
+    remarks: &[(String, String)],
 ) -> Result<Read<Vec<u8>>, Error> {
     let _ = markers;
     match format.id {
@@ -36,7 +39,10 @@ pub fn motion(
             table.angle_unit = AngleUnit::Radians;
             self::table(format, &table).map(Read::clean)
         }
-        _ => table(format, &motion.to_table(model, name)).map(Read::clean),
+        _ => {
+            let table = Table { header: remarks.to_vec(), ..motion.to_table(model, name) };
+            self::table(format, &table).map(Read::clean)
+        }
     }
 }
 

@@ -100,26 +100,27 @@
 //!
 //! # Stream at 100 Hz
 //!
-//! A [`tracking::Stream`] solves frames as they come, each from the one before, into buffers that it
-//! keeps. It owns its share of the model, so that both live in one struct;
-//! `examples/streaming` is such a program, and runs in a browser as well.
+//! A [`tracking::Live`] solves frames as they come, each from the one before, into the caller's buffer. It
+//! owns its share of the model, so that both live in one struct, and allocates nothing from frame to
+//! frame. `examples/streaming` is such a program, over the [`tracking::Stream`] below it, and runs in a
+//! browser as well; `condyle bench MODEL TRIAL` measures the slowest frame of a recording.
 //!
 //! ```
-//! use condyle::tracking::{MarkerTarget, Rules, Stream, Targets, Tracker};
+//! use condyle::tracking::{Live, Request};
 //! use condyle::{ModelBuilder, math::Vec3};
 //! # let mut b = ModelBuilder::new("leg");
 //! # let shank = b.segment("shank", None);
 //! # b.hinge("knee", shank, "flexion", -Vec3::Z);
 //! # b.marker("ankle", Some(shank), Vec3::new(0.0, -0.40, 0.0));
 //! # let model = b.build()?;
-//! let markers = vec![MarkerTarget { marker: 0, weight: 1.0 }];
-//! let targets = Targets { markers, ..Targets::default() };
-//! let mut stream = Stream::new(Tracker::new(model, targets, Rules::default()));
+//! let labels = ["ankle".to_owned()];
+//! let mut live = Live::new(model, &labels, &Request::default())?;
+//! let mut coordinates = [0.0];
 //! for frame in 0..100 {
 //!     let flexion = 0.5 * (f64::from(frame) * 0.05).sin();
 //!     let seen = [-0.40 * flexion.sin(), -0.40 * flexion.cos(), 0.0];
-//!     let answer = stream.next(&[Some(seen)]);
-//!     assert!((answer.coordinates[0] - flexion).abs() < 1e-5);
+//!     live.next(&[Some(seen)], &mut coordinates)?;
+//!     assert!((coordinates[0] - flexion).abs() < 1e-5);
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -1,19 +1,23 @@
-//! `condyle bench`: how fast a model is posed on this machine.
+//! `condyle bench`: how fast a model is posed on this machine, and frames of a recording are solved one by one.
 
 use super::Outcome;
 use crate::failure::{Failure, warned};
 use crate::output;
 use clap::Args;
+use condyle::tracking::{Live, Request};
 use condyle::{Jacobian, Mode, Model, Pose, Program, open};
 use serde_json::json;
 use std::hint::black_box;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub(crate) struct Bench {
     /// The model: a file, or the name of a shipped one.
     model: PathBuf,
+    /// A marker recording, whose frames are solved one by one as from a camera system.
+    trial: Option<PathBuf>,
     /// One JSON document on standard output.
     #[arg(long)]
     json: bool,
@@ -26,6 +30,20 @@ const POSTURES: usize = 64;
 const BATCH: usize = 1024;
 /// How often each figure is measured; the minimum is reported.
 const ROUNDS: usize = 15;
+
+/// How often a recording is solved; of each frame the least time counts.
+const PASSES: usize = 5;
+
+/// Times of frames that are solved one by one, in milliseconds.
+struct Streamed {
+    frames: usize,
+    /// The first, which starts from first guesses.
+    first: f64,
+    mean: f64,
+    /// The slowest after it, and its number.
+    worst: f64,
+    worst_frame: usize,
+}
 
 impl Bench {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
@@ -55,6 +73,7 @@ impl Bench {
             }
         });
         let (segments, bytes) = (model.segments().len(), pose.bytes());
+        let streamed = self.trial.as_deref().map(|trial| streamed(&model, trial)).transpose()?;
         if self.json {
             output::print_json(&json!({
                 "model": model.name(),
@@ -64,6 +83,13 @@ impl Bench {
                 "batched_pose_ns": batched,
                 "pose_with_jacobian_ns": differentiated,
                 "bytes_per_pose": bytes,
+                "stream": streamed.map(|s| json!({
+                    "frames": s.frames,
+                    "first_ms": s.first,
+                    "mean_ms": s.mean,
+                    "worst_ms": s.worst,
+                    "worst_frame": s.worst_frame,
+                })),
             }))?;
         } else {
             let row = |name: &str, value: f64| {
@@ -78,15 +104,47 @@ impl Bench {
                 row("one of a batch of 1024", batched),
                 row("with its Jacobian", differentiated),
             ]);
-            let text = format!(
+            let mut text = format!(
                 "{}: {segments} segments, {} coordinates, {bytes} bytes a pose, one thread\n{table}",
                 self.model.display(),
                 model.coordinates().len(),
             );
+            if let Some(s) = streamed {
+                text.push_str(&format!(
+                    "  {} frames one by one: {:.2} ms on average, {:.2} ms at worst (frame {}); the first \
+                     takes {:.1} ms\n",
+                    s.frames, s.mean, s.worst, s.worst_frame, s.first,
+                ));
+            }
             output::print(text.as_bytes())?;
         }
         Ok(Outcome::Done)
     }
+}
+
+/// Solves the frames of a recording one by one, several times over.
+fn streamed(model: &Model, trial: &Path) -> Result<Streamed, Failure> {
+    let recording = warned(trial, open::recording(trial)?);
+    let fail =
+        |error: &dyn std::fmt::Display| Failure::new(format!("{}: {error}", trial.display()));
+    let mut times = vec![f64::INFINITY; recording.frames()];
+    let mut coordinates = vec![0.0; model.stored_len()];
+    let shared = Arc::new(model.clone());
+    for _ in 0..PASSES {
+        let live = Live::new(Arc::clone(&shared), &recording.labels, &Request::default());
+        let mut live = live.map_err(|error| fail(&error))?;
+        for (frame, least) in times.iter_mut().enumerate() {
+            let seen: Vec<_> = recording.frame(frame).iter().map(|seen| seen.position()).collect();
+            let start = Instant::now();
+            let _ = black_box(live.next(&seen, &mut coordinates));
+            *least = least.min(1e3 * start.elapsed().as_secs_f64());
+        }
+    }
+    let [first, rest @ ..] = &times[..] else { return Err(fail(&"there are no frames")) };
+    let most = rest.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
+    let (worst_frame, worst) = most.map_or((0, *first), |(frame, time)| (frame + 1, *time));
+    let mean = rest.iter().sum::<f64>() / rest.len().max(1) as f64;
+    Ok(Streamed { frames: times.len(), first: *first, mean, worst, worst_frame })
 }
 
 /// Postures spread over the ranges, or half a unit around the defaults where there is none.

@@ -158,7 +158,7 @@ impl Convert {
             Id::Trc => return self.virtual_markers(&model, &motion),
             _ => motion.make_effective(&Program::compile(&model), self.mode()),
         }
-        format::encoded(target, &model, &motion, &self.name(), None)
+        format::encoded(target, &model, &motion, &self.name(), None, &[])
     }
 
     /// The model's markers along a motion, as a recording in millimetres.

@@ -100,7 +100,7 @@ impl Demo {
                 let path = folder.join(name);
                 let format = motion_format::of_motion(&path, None)?;
                 let markers = Some((&recording, labels.as_slice()));
-                let bytes = motion_format::encoded(format, &model, motion, "demo", markers)?;
+                let bytes = motion_format::encoded(format, &model, motion, "demo", markers, &[])?;
                 output::write(&path, &bytes)?;
             }
             if !self.json {

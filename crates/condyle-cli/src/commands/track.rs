@@ -120,7 +120,8 @@ impl Track {
         let format = motion_format::of_motion(place, self.to.as_deref())?;
         let name = trial.file_stem().unwrap_or_default().to_string_lossy();
         let markers = Some((recording, tracking.labels.as_slice()));
-        let bytes = motion_format::encoded(format, model, &tracking.motion, &name, markers)?;
+        let (motion, remarks) = (&tracking.motion, tracking.remarks(model));
+        let bytes = motion_format::encoded(format, model, motion, &name, markers, &remarks)?;
         output::write(&self.for_trial(path, trial, format.name), &bytes)
     }
 }

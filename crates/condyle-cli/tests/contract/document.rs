@@ -23,7 +23,7 @@ fn a_converted_model_poses_tracks_and_describes_itself_as_before() {
     }
     let info = |model| folder.condyle(&["info", model, "--json"]).json();
     let (osim, toml) = (info("leg.osim"), info("leg.toml"));
-    for key in ["name", "up", "segments", "coordinates", "markers", "closures"] {
+    for key in ["name", "up", "segments", "coordinates", "markers", "closures", "postures"] {
         assert_eq!(osim[key], toml[key], "{key}");
     }
     // A document is saved as it was, and a scene is made of it.

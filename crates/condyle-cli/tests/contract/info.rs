@@ -26,14 +26,15 @@ fn a_model_for_programs() {
     assert_eq!(names(&info["coordinates"], "key"), keys);
     let hip = json!({
         "key": "hip_flexion", "name": "hip_flexion", "joint_set": "hip", "kind": "rotation",
-        "default": 0.0, "range": [-1.5, 2.0], "clamped": true, "locked": false, "follows": [],
+        "default": 0.0, "range": [-1.5, 2.0], "clamped": true, "circle": false, "locked": false,
+        "follows": [],
     });
     assert_eq!(info["coordinates"][0], hip);
     assert_eq!(info["coordinates"][1]["clamped"], false);
     let slide = json!({
         "key": "knee_slide", "name": "knee_slide", "joint_set": "knee", "kind": "translation",
-        "default": 0.0, "range": [null, null], "clamped": false, "locked": false,
-        "follows": ["knee_angle"],
+        "default": 0.0, "range": [null, null], "clamped": false, "circle": false,
+        "locked": false, "follows": ["knee_angle"],
     });
     assert_eq!(info["coordinates"][2], slide);
     assert_eq!(info["coordinates"][3]["locked"], true);
@@ -96,6 +97,39 @@ fn loops_are_listed() {
     assert_eq!(info["closures"][1], pin);
     let text = folder.condyle(&["info", "loop.osim"]).expect(0);
     assert!(text.contains("rod  distance  the world to foot: 300 mm\n"), "{text}");
+}
+
+#[test]
+fn postures_and_circles_are_listed() {
+    let folder = Folder::new("info-postures");
+    folder.write(
+        "arm.toml",
+        "condyle = 1\nkind = \"model\"\nangles = \"deg\"\n\
+         [segment.arm]\n[segment.hand]\nparent = \"arm\"\n\
+         [joint.shoulder]\ntype = \"hinge\"\nsegment = \"arm\"\naxis = [0, 0, 1]\n\
+         coordinate.angle = { range = [-180, 180] }\n\
+         [joint.wrist]\ntype = \"hinge\"\nsegment = \"hand\"\naxis = [0, 1, 0]\n\
+         coordinate.angle = {}\n\
+         [posture.bend]\nsum = { \"wrist.angle\" = 1 }\nrest = 10\nstiffness = 1e-5\n\
+         source = \"a paper\"\n\
+         [posture.both]\nsum = { \"shoulder.angle\" = -1, \"wrist.angle\" = 2.5 }\nrest = 0\nstiffness = 3e-5\n",
+    );
+    let text = folder.condyle(&["info", "arm.toml"]).expect(0);
+    assert!(text.contains("-180°  180°  clamped, a circle\n"), "{text}");
+    let listed = "\npostures, which tracking holds: sum of coordinates, rest, stiffness\n  \
+                  bend  wrist/angle                        10°  1e-5\n  \
+                  both  -shoulder/angle + 2.5 wrist/angle   0°  3e-5\n";
+    assert!(text.contains(listed), "{text}");
+    let info = folder.condyle(&["info", "arm.toml", "--json"]).json();
+    let circles = info["coordinates"].as_array().expect("a list").iter().map(|c| &c["circle"]);
+    assert_eq!(circles.collect::<Vec<_>>(), [&json!(true), &json!(false)]);
+    let posture = &info["postures"][0];
+    near(number(&posture["rest"]), 10f64.to_radians(), 1e-15);
+    assert_eq!(
+        (&posture["name"], &posture["sum"], &posture["stiffness"], &posture["source"]),
+        (&json!("bend"), &json!({ "wrist/angle": 1.0 }), &json!(1e-5), &json!("a paper"))
+    );
+    assert_eq!(info["postures"][1]["sum"], json!({ "shoulder/angle": -1.0, "wrist/angle": 2.5 }));
 }
 
 #[test]

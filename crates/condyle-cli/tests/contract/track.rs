@@ -24,6 +24,9 @@ fn a_motion_comes_back_from_its_markers() {
     let run = folder.condyle(&["track", "leg.osim", "walk.trc", "-o", "-", "--threads", "1"]);
     let text = run.expect(0);
     assert!(text.contains("inDegrees=yes\n") && text.starts_with("walk\n"), "{text}");
+    // The toe moves no marker, and the header says so.
+    let header = text.split_once("endheader\n").expect("a header").0;
+    assert!(header.ends_with("\nno_marker_moves=toe/flexion\n"), "{header}");
     let (names, rows) = table(&text, '\t');
     let expected =
         ["time", "hip_flexion", "knee_angle", "knee_slide", "ankle/flexion", "toe/flexion"];

@@ -211,6 +211,11 @@ impl Reader<'_> {
                 coordinates.push((entry.key.text.clone(), factor));
             }
         }
+        if coordinates.is_empty() {
+            let message = "`coordinates` names none".to_owned();
+            let help = "give names with factors, such as { a = 1 }";
+            self.texts.error(node.spot, "setup/posture", message, help);
+        }
         Some(SetupPosture { coordinates, rest, stiffness: stiffness? })
     }
 
@@ -294,6 +299,10 @@ mod tests {
             (
                 "angles = \"deg\"\n[hold.a]\nstiffness = 1\nrest = 9",
                 "line 6, column 8: `rest` has no unit",
+            ),
+            (
+                "[posture.p]\nstiffness = 1\ncoordinates = {}",
+                "line 5, column 15: `coordinates` names none",
             ),
             ("[posture.p]\nstiffness = 1", "line 3, column 10: [posture.p] has no `coordinates`"),
         ] {

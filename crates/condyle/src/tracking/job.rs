@@ -1,10 +1,10 @@
 //! One recording on its way through a tracker.
 
-use super::{Faulty, Request, Swap, Tracking, UnusedMarkers, Verdict, posture, verdict};
-use crate::matching::match_markers;
+use super::jump::Judged;
+use super::{Faulty, Request, Swap, Tracking, UnusedMarkers, Variant, Verdict, posture, verdict};
+use crate::matching::{Match, match_markers};
 use condyle_diagnostics::{Diagnostic, Error};
-use condyle_math::Mat3;
-use condyle_model::{Mode, Model, Pose};
+use condyle_model::Model;
 use condyle_motion::{Motion, Recording};
 use condyle_track::robust::{self, Corrected, Repairs};
 use condyle_track::{
@@ -14,21 +14,32 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::{Arc, Mutex};
 
-/// A segment that turns by more than this from one frame to the next has jumped: 60°.
-const JUMP: f64 = std::f64::consts::FRAC_PI_3;
+/// The solver's tolerance for frames whose unit is wrong.
+const ROUGHLY: f64 = 1e-2;
 
 /// A recording whose markers are matched to a model, ready to be solved.
 #[derive(Clone, Debug)]
 pub struct Job<'a> {
     tracker: Arc<Tracker>,
+    rules: Rules,
     recording: &'a Recording,
-    markers: Vec<String>,
-    labels: Vec<usize>,
+    pub(super) markers: Vec<String>,
+    pub(super) labels: Vec<usize>,
     frames: Range<usize>,
-    warnings: Vec<Diagnostic>,
+    pub(super) warnings: Vec<Diagnostic>,
     threads: Option<usize>,
     robust: bool,
     max_rms: f64,
+    left_out: LeftOut,
+}
+
+/// Markers that both sides have and that are not used all the same.
+#[derive(Clone, Debug, Default)]
+struct LeftOut {
+    /// Labels that no frame shows.
+    never_seen: Vec<String>,
+    /// Markers of the model of weight 0.
+    without_weight: Vec<String>,
 }
 
 impl<'a> Job<'a> {
@@ -50,24 +61,33 @@ impl<'a> Job<'a> {
         let renamed = request.renamed(&model, &recording.labels, &mut warnings);
         let (matches, guesses) = match_markers(&model, &renamed);
         warnings.extend(guesses);
-        let mut targets = Targets::default();
-        let (mut labels, mut markers) = (vec![], vec![]);
-        for found in matches {
-            let name = &model.markers()[found.marker].name;
-            let weight = weights[found.marker];
-            if weight > 0.0 {
-                targets.markers.push(MarkerTarget { marker: found.marker, weight });
-                labels.push(found.label);
-                markers.push(name.clone());
-            }
-        }
         if let Some(weights) = &request.marker_weights {
-            warnings.extend(unused_tasks(weights, &markers));
+            let names = |found: &Match| model.markers()[found.marker].name.clone();
+            warnings.extend(unused_tasks(weights, &matches.iter().map(names).collect::<Vec<_>>()));
         }
-        if targets.markers.is_empty() {
+        let (mut weighed, light): (Vec<Match>, Vec<Match>) =
+            matches.into_iter().partition(|found| weights[found.marker] > 0.0);
+        if weighed.is_empty() {
             return Err(no_common_markers(&model, recording));
         }
         let frames = frames_in(recording, request.time_range)?;
+        let (seen, hidden): (Vec<Match>, Vec<Match>) =
+            weighed.iter().copied().partition(|found| is_seen(recording, &frames, found.label));
+        // Where no marker is ever seen, every frame says so.
+        let mut left_out = LeftOut::default();
+        if !seen.is_empty() {
+            let label = |found: &Match| recording.labels[found.label].clone();
+            left_out.never_seen = hidden.iter().map(label).collect();
+            weighed = seen;
+        }
+        let name = |found: &Match| model.markers()[found.marker].name.clone();
+        left_out.without_weight = light.iter().map(name).collect();
+        let target =
+            |found: &Match| MarkerTarget { marker: found.marker, weight: weights[found.marker] };
+        let mut targets =
+            Targets { markers: weighed.iter().map(target).collect(), ..Targets::default() };
+        let markers = weighed.iter().map(name).collect();
+        let labels = weighed.iter().map(|found| found.label).collect();
         let times = &recording.times[frames.clone()];
         request.add_coordinates(&model, times, &mut targets, &mut warnings);
         posture::add(&model, &mut targets.postures);
@@ -77,7 +97,19 @@ impl<'a> Job<'a> {
         let rules = Rules { limits: request.limits, ..Rules::default() };
         let tracker = Arc::new(Tracker::new(model, targets, rules));
         let max_rms = request.max_rms;
-        Ok(Self { tracker, recording, markers, labels, frames, warnings, threads, robust, max_rms })
+        Ok(Self {
+            tracker,
+            rules,
+            recording,
+            markers,
+            labels,
+            frames,
+            warnings,
+            threads,
+            robust,
+            max_rms,
+            left_out,
+        })
     }
 
     /// The tracker, which a [`Stream`](super::Stream) can share.
@@ -89,8 +121,26 @@ impl<'a> Job<'a> {
     /// again. `progress` is called with the number of frames that are done and their total, the last time
     /// when all are solved; what follows is how far they can be trusted.
     ///
-    /// Frames that cannot be solved are marked in their answer.
-    pub fn run(&self, mut progress: &mut (dyn FnMut(usize, usize) + Send)) -> Tracking {
+    /// Frames that cannot be solved are marked in their answer. Where the markers are ten times as far apart
+    /// as those of a body, or more, or that much nearer, the frames are solved roughly first; if another
+    /// unit explains it, that is the answer, with a warning.
+    pub fn run(&self, progress: &mut (dyn FnMut(usize, usize) + Send)) -> Tracking {
+        let tracker = &self.tracker;
+        if verdict::power_of_unit(tracker, self.recording, self.frames.clone(), &self.labels) != 0 {
+            let rules = Rules { tolerance: ROUGHLY, ..self.rules };
+            let rough = Tracker::new(Arc::clone(tracker.model()), tracker.targets().clone(), rules);
+            let rough = Self { tracker: Arc::new(rough), rules, robust: false, ..self.clone() };
+            let mut tracking = rough.solved(progress);
+            if let Some(Variant::Scaled(_)) = tracking.verdict.remedy {
+                let message = "the unit is wrong, so the frames were solved roughly";
+                tracking.warnings.push(Diagnostic::warning("track/rough", message));
+                return tracking;
+            }
+        }
+        self.solved(progress)
+    }
+
+    fn solved(&self, mut progress: &mut (dyn FnMut(usize, usize) + Send)) -> Tracking {
         let first = self.frames.start;
         let recorded = |frame: usize, seen: &mut Vec<Option<[f64; 3]>>| {
             let row = self.recording.frame(first + frame);
@@ -125,8 +175,20 @@ impl<'a> Job<'a> {
             }));
         }
         progress(answers.len(), answers.len());
-        let trust = self.trust(&Corrected { recorded: &recorded, repairs: &repairs }, &answers);
-        let jumps = self.jumps(&answers).map(|frame| first + frame).collect();
+        let corrected = Corrected { recorded: &recorded, repairs: &repairs };
+        let trust = self.trust(&corrected, &answers);
+        let label = |&label: &usize| &*self.recording.labels[label];
+        let judged = Judged {
+            tracker: &self.tracker,
+            recorded: &corrected,
+            answers: &answers,
+            trust: &trust,
+            labels: self.labels.iter().map(label).collect(),
+            swaps: &swaps,
+            faulty: &faulty,
+            first,
+        };
+        let jumps = judged.jumps();
         let motion = Motion {
             times: self.recording.times[self.frames.clone()].to_vec(),
             frames: answers.iter().map(|a| a.coordinates.clone()).collect(),
@@ -135,7 +197,12 @@ impl<'a> Job<'a> {
         let (frames, mut warnings) = (self.frames.clone(), self.warnings.clone());
         warnings.extend(self.robust.then(|| few_frames(frames.len())).flatten());
         let model = self.tracker.model();
-        let unused = UnusedMarkers::of(model, &self.recording.labels, &markers, &labels);
+        let LeftOut { never_seen, without_weight } = self.left_out.clone();
+        let unused = UnusedMarkers {
+            never_seen,
+            without_weight,
+            ..UnusedMarkers::of(model, &self.recording.labels, &markers, &labels)
+        };
         let verdict = Verdict::PLAUSIBLE;
         let mut tracking = Tracking {
             motion,
@@ -152,7 +219,8 @@ impl<'a> Job<'a> {
             jumps,
             verdict,
         };
-        let (verdict, odd) = verdict::judge(&self.tracker, self.recording, &tracking, self.max_rms);
+        let (verdict, odd) =
+            verdict::judge(&self.tracker, self.rules, self.recording, &tracking, self.max_rms);
         tracking.verdict = verdict;
         tracking.warnings.extend(odd);
         tracking
@@ -189,34 +257,6 @@ impl<'a> Job<'a> {
             trust.collect()
         };
         in_parallel(self.threads, chunks.len(), || Scratch::new(tracker), judge).concat()
-    }
-
-    /// The frames in which a segment with markers has turned by more than [`JUMP`] since the one before.
-    fn jumps(&self, answers: &[FrameAnswer]) -> impl Iterator<Item = usize> {
-        let (model, program) = (self.tracker.model(), self.tracker.program());
-        let targets = self.tracker.targets().markers.iter();
-        let mut segments: Vec<_> =
-            targets.filter_map(|t| model.markers()[t.marker].segment).collect();
-        segments.sort_unstable_by_key(|segment| segment.index());
-        segments.dedup();
-        let mut pose = Pose::new(program);
-        let mut before: Vec<Mat3> = vec![];
-        let mut jumps = vec![];
-        for (frame, answer) in answers.iter().enumerate() {
-            if program.evaluate(&answer.coordinates, Mode::Open, &mut pose).is_err() {
-                continue;
-            }
-            let now: Vec<Mat3> = segments.iter().map(|&s| pose.segment(s).linear).collect();
-            // The trace of a rotation is 1 + 2 cos of its angle.
-            let turned = |(a, b): (&Mat3, &Mat3)| {
-                a.x.dot(b.x) + a.y.dot(b.y) + a.z.dot(b.z) < 1.0 + 2.0 * JUMP.cos()
-            };
-            if before.iter().zip(&now).any(turned) {
-                jumps.push(frame);
-            }
-            before = now;
-        }
-        jumps.into_iter()
     }
 
     fn pass(
@@ -264,6 +304,11 @@ fn few_frames(frames: usize) -> Option<Diagnostic> {
     );
     let said = || Diagnostic::warning("track/unknown-offsets", message);
     (frames < robust::FEWEST_FRAMES).then(said)
+}
+
+/// Whether a label is seen in any of the frames.
+fn is_seen(recording: &Recording, frames: &Range<usize>, label: usize) -> bool {
+    frames.clone().any(|frame| recording.position(frame, label).is_some())
 }
 
 fn no_common_markers(model: &Model, recording: &Recording) -> Error {

@@ -2,11 +2,15 @@
 //!
 //! A [`Request`] says what is tracked, by names. [`track`] does all at once; [`Job`] prepares it and
 //! solves it in a second step. What comes out is a [`Tracking`], summed up in a [`Report`]. Frames
-//! that come one by one are solved by a [`Stream`], over a [`Tracker`] that shares its model.
+//! that come one by one are solved by a [`Live`], which knows labels, or by the [`Stream`] below it, which
+//! knows marker targets; both own their share of the model.
 
 mod cloud;
 mod job;
+mod jump;
+mod live;
 pub(crate) mod posture;
+mod remarks;
 mod report;
 mod request;
 #[cfg(any(feature = "document", feature = "opensim"))]
@@ -22,6 +26,9 @@ pub use condyle_track::{
     Rules, Scratch, Stream, Targets, Tracker, Trust, Wanted,
 };
 pub use job::Job;
+pub use jump::{Jump, JumpCause};
+pub use live::Live;
+pub use remarks::BeyondRange;
 pub use report::{Determination, FailedFrame, MarkerErrors, Report, Summary};
 pub use request::{CoordinateRequest, CoordinateValue, PostureRequest, Request};
 pub use unused::{Unused, UnusedMarkers};
@@ -60,9 +67,8 @@ pub struct Tracking {
     pub trust: Vec<Vec<Trust>>,
     /// Coordinates that move no marker that was used.
     pub unmoved: Vec<CoordinateId>,
-    /// Frames of the recording, from 0, in which a segment with markers turns by more than 60° from the
-    /// frame before.
-    pub jumps: Vec<usize>,
+    /// Where a segment with markers turns by more than 60° from one frame to the next, and why.
+    pub jumps: Vec<Jump>,
     /// Whether the fit can be believed.
     pub verdict: Verdict,
 }

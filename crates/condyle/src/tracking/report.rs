@@ -1,6 +1,7 @@
 //! Numbers about a whole tracking.
 
-use super::{Faulty, Swap, Tracking, UnusedMarkers, Verdict};
+use super::{BeyondRange, Faulty, Jump, Swap, Tracking, UnusedMarkers, Verdict};
+use crate::check::circles;
 use condyle_model::{CoordinateId, Model};
 use condyle_track::{FrameAnswer, FrameStatus, Trust};
 
@@ -58,8 +59,20 @@ pub struct Determination {
     pub weak: f64,
     /// Share of the frames in which it is held at a bound, or by the posture of the model.
     pub held: f64,
+    /// Share of the frames, among those, in which the markers push it against a bound.
+    pub at_limit: f64,
     /// From when to when it is weak or held, in seconds.
     pub spans: Vec<[f64; 2]>,
+}
+
+/// From this share of the frames on a coordinate counts as determined.
+const SURE: f64 = 0.9;
+
+impl Determination {
+    /// Whether it is determined in nine of ten frames.
+    pub fn is_sure(&self) -> bool {
+        self.determined >= SURE
+    }
 }
 
 /// All numbers about a tracking.
@@ -77,8 +90,10 @@ pub struct Report {
     pub determination: Vec<Determination>,
     /// Keys of the coordinates that move no marker that was used.
     pub unmoved: Vec<String>,
-    /// Frames of the recording, from 0, in which a segment turns by more than 60° from the one before.
-    pub jumps: Vec<usize>,
+    /// Where a segment turns by more than 60° from one frame to the next, and why.
+    pub jumps: Vec<Jump>,
+    /// Rotations without ends whose angles leave the range of their file.
+    pub beyond_range: Vec<BeyondRange>,
     /// Labels that were exchanged and put right.
     pub swaps: Vec<Swap>,
     /// Labels that were left out, or stray and could not be put right.
@@ -122,15 +137,15 @@ impl Tracking {
         };
         let mostly = model.coordinate_ids().filter(mostly);
         let key = |id: CoordinateId| model.coordinate_key(id);
-        let solved = model.coordinate_ids().filter(|&id| !model.coordinate(id).locked);
         Report {
             summary: self.summary(),
             loop_error: self.answers.iter().map(|a| a.closure_error).fold(0.0, f64::max),
             iterations: self.answers.iter().map(|a| u64::from(a.iterations)).sum(),
             mostly_at_limit: mostly.map(key).collect(),
-            determination: solved.map(|id| self.determination(model, id)).collect(),
+            determination: self.determination(model),
             unmoved: self.unmoved.iter().copied().map(key).collect(),
             jumps: self.jumps.clone(),
+            beyond_range: self.beyond_range(model),
             swaps: self.swaps.clone(),
             faulty: self.faulty.clone(),
             markers: self.marker_errors(),
@@ -139,8 +154,13 @@ impl Tracking {
         }
     }
 
-    /// In how many of the frames a coordinate follows from the markers.
-    fn determination(&self, model: &Model, id: CoordinateId) -> Determination {
+    /// In how many of the frames each coordinate that is not locked follows from the markers.
+    pub(super) fn determination(&self, model: &Model) -> Vec<Determination> {
+        let solved = model.coordinate_ids().filter(|&id| !model.coordinate(id).locked);
+        solved.map(|id| self.determination_of(model, id)).collect()
+    }
+
+    fn determination_of(&self, model: &Model, id: CoordinateId) -> Determination {
         let trust = || self.trust.iter().map(|of| of[id.index()]);
         let n = self.trust.len().max(1) as f64;
         let share = |kinds: &[Trust]| trust().filter(|t| kinds.contains(t)).count() as f64 / n;
@@ -159,19 +179,23 @@ impl Tracking {
             determined: share(&[Trust::Determined]),
             weak: share(&[Trust::Weak]),
             held: share(&[Trust::Held, Trust::AtLimit]),
+            at_limit: share(&[Trust::AtLimit]),
             spans,
         }
     }
 
     /// Coordinates that touch a bound of their enforced range, with the number of frames in which
-    /// they do.
+    /// they do. A rotation whose range is a circle has no bounds.
     pub fn at_limits(&self, model: &Model) -> Vec<(CoordinateId, usize)> {
         let touches = |id: CoordinateId| {
             let (lower, upper) = model.coordinate(id).range.bounds();
             let values = self.motion.frames.iter().map(|frame| model.value(frame, id));
             values.filter(|&value| value <= lower || value >= upper).count()
         };
-        let free = model.coordinate_ids().filter(|&id| model.coordinate(id).follows.is_none());
+        let circles = circles(model);
+        let bounded =
+            |id: &CoordinateId| model.coordinate(*id).follows.is_none() && !circles.contains(id);
+        let free = model.coordinate_ids().filter(bounded);
         free.map(|id| (id, touches(id))).filter(|(_, frames)| *frames > 0).collect()
     }
 

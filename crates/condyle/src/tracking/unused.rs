@@ -15,10 +15,14 @@ pub struct Unused {
 /// What was not used on either side.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct UnusedMarkers {
-    /// Markers of the model that the recording does not have, or that have no weight.
+    /// Markers of the model that the recording does not have or never shows, or that have no weight.
     pub model: Vec<Unused>,
-    /// Labels of the recording that are no marker of the model, or have no weight.
+    /// Labels of the recording that are no marker of the model, are never seen, or have no weight.
     pub recording: Vec<Unused>,
+    /// Labels of those that are a marker of the model, but that no frame shows.
+    pub never_seen: Vec<String>,
+    /// Markers of the model, among those, that the recording has, but that have the weight 0.
+    pub without_weight: Vec<String>,
 }
 
 impl UnusedMarkers {
@@ -44,7 +48,7 @@ impl UnusedMarkers {
             });
             unused.collect()
         };
-        Self { model: of(&model, &recording), recording: of(&recording, &model) }
+        Self { model: of(&model, &recording), recording: of(&recording, &model), ..Self::default() }
     }
 }
 

@@ -15,8 +15,10 @@ use super::{Tracking, Variant, sides};
 use condyle_diagnostics::Diagnostic;
 use condyle_math::Vec3;
 use condyle_model::{CoordinateId, CoordinateKind, Mode, Pose, SegmentId, UpAxis};
-use condyle_motion::Recording;
-use condyle_track::{FrameAnswer, Scratch, Tracker};
+use condyle_motion::{Observed, Recording};
+use condyle_track::{FrameAnswer, Rules, Scratch, Tracker};
+use std::ops::Range;
+use std::sync::Arc;
 
 mod labels;
 
@@ -59,9 +61,50 @@ const HALF: f64 = 0.5;
 const GUESSES: usize = 4;
 /// Another cause is named, too, where its error is less than so many times that of the best.
 const AS_GOOD: f64 = 1.5;
+/// Causes are tried at this tolerance of the solver: their errors are compared by halves.
+const ROUGHLY: f64 = 1e-3;
+
+/// The power of ten by which the lengths of a recording must be multiplied to be those of a body, as far
+/// as that can be told from how far its markers are apart in a few frames; 0 where they are right.
+pub(super) fn power_of_unit(
+    tracker: &Tracker,
+    recording: &Recording,
+    frames: Range<usize>,
+    labels: &[usize],
+) -> i32 {
+    let mut pose = Pose::new(tracker.program());
+    let Some(places) = places(tracker, &tracker.model().defaults(), &mut pose) else { return 0 };
+    let count = FRAMES.min(frames.len());
+    let mut cloud = Cloud::default();
+    for number in 0..count {
+        let seen = recording.frame(frames.start + (2 * number + 1) * frames.len() / (2 * count));
+        cloud += Cloud::of(seen_of(&places, labels, seen));
+    }
+    power_of(&cloud)
+}
+
+/// Pairs of a place at rest and where the marker was seen.
+fn seen_of<'a>(
+    places: &'a [Vec3],
+    labels: &'a [usize],
+    seen: &'a [Observed],
+) -> impl Iterator<Item = (Vec3, Vec3)> + Clone + 'a {
+    places
+        .iter()
+        .zip(labels)
+        .filter_map(|(&place, &label)| Some((place, Vec3::from(seen.get(label)?.position()?))))
+}
+
+/// The power of ten that brings a cloud to the size of that at rest; 0 where that is beyond a million.
+fn power_of(cloud: &Cloud) -> i32 {
+    let power = cloud.ratio().map_or(0.0, |ratio| -ratio.log10().round());
+    if power.abs() <= 6.0 { power as i32 } else { 0 }
+}
+
 /// Judges a tracking of a recording; warnings are about what is odd, but fits.
 pub(super) fn judge(
     tracker: &Tracker,
+    rules: Rules,
     recording: &Recording,
     tracking: &Tracking,
     max_rms: f64,
@@ -72,7 +115,7 @@ pub(super) fn judge(
     {
         return (Verdict::because(why, None), vec![]);
     }
-    let Some(mut trial) = Trial::new(tracker, recording, tracking) else {
+    let Some(mut trial) = Trial::new(tracker, rules, recording, tracking) else {
         return (bound(tracking, rms, max_rms), vec![]);
     };
     let upward = trial.upward();
@@ -160,8 +203,9 @@ fn nothing_moves(tracker: &Tracker) -> Option<Diagnostic> {
 /// A few frames of a tracking, for trying causes on.
 struct Trial<'a> {
     tracker: &'a Tracker,
-    /// Made when a frame is first tried.
-    scratch: Option<Scratch>,
+    rules: Rules,
+    /// The same at a rough tolerance, made when a frame is first tried.
+    rough: Option<(Tracker, Scratch)>,
     /// For each marker target its label in the recording.
     labels: &'a [usize],
     /// The frames, with all labels, and their numbers among those tracked.
@@ -178,7 +222,12 @@ struct Trial<'a> {
 
 impl<'a> Trial<'a> {
     /// Frames spread over a tracking, of those that see at least half as many markers as the best.
-    fn new(tracker: &'a Tracker, recording: &Recording, tracking: &'a Tracking) -> Option<Self> {
+    fn new(
+        tracker: &'a Tracker,
+        rules: Rules,
+        recording: &Recording,
+        tracking: &'a Tracking,
+    ) -> Option<Self> {
         let seen =
             |answer: &FrameAnswer| answer.marker_errors.iter().filter(|e| e.is_finite()).count();
         let most = tracking.answers.iter().map(seen).max()?;
@@ -206,7 +255,8 @@ impl<'a> Trial<'a> {
         let size = 2.0 * places.iter().map(|&p| (p - middle).norm()).fold(0.0, f64::max);
         Some(Self {
             tracker,
-            scratch: None,
+            rules,
+            rough: None,
             labels: &tracking.labels,
             sample,
             answers: numbers.iter().map(|n| &tracking.answers[*n]).collect(),
@@ -230,12 +280,7 @@ impl<'a> Trial<'a> {
 
     /// The places at rest and in one of the frames of a sample, of the markers seen.
     fn cloud(&self, sample: &Recording, frame: usize) -> Cloud {
-        let seen = sample.frame(frame);
-        let pairs =
-            self.places.iter().zip(self.labels).filter_map(|(&place, &label)| {
-                Some((place, Vec3::from(seen.get(label)?.position()?)))
-            });
-        Cloud::of(pairs)
+        Cloud::of(seen_of(&self.places, self.labels, sample.frame(frame)))
     }
 
     fn up(&self) -> usize {
@@ -313,9 +358,14 @@ impl<'a> Trial<'a> {
         let mut cloud = Cloud::default();
         (0..self.numbers.len()).for_each(|frame| cloud += self.cloud(&self.sample, frame));
         let mut causes = vec![];
-        let power = cloud.ratio().map_or(0.0, |ratio| -ratio.log10().round());
-        if power != 0.0 && power.abs() <= 6.0 {
-            causes.push(Variant::Scaled(10f64.powi(power as i32)));
+        let power = power_of(&cloud);
+        if power != 0 {
+            let scaled = Variant::Scaled(10f64.powi(power));
+            match self.with(&scaled.of(&self.sample)) {
+                // Nothing else makes a body larger or smaller.
+                Some(rms) if rms <= HALF * self.rms() => return vec![(scaled, rms)],
+                _ => {}
+            }
         }
         causes.extend(upward.map(|direction| self.upright(direction, &cloud)));
         let up = [Vec3::X, Vec3::Y, Vec3::Z][self.up()];
@@ -327,8 +377,8 @@ impl<'a> Trial<'a> {
         causes.push(Variant::Mirrored(cloud.mirrored()));
         let now = self.likeness(&self.sample);
         let tried = causes.into_iter().filter_map(|cause| {
-            // Sizes and turns make no difference to likeness; they are not guessed without a reason.
-            let always = matches!(cause, Variant::Scaled(_) | Variant::Turned { .. });
+            // Turns make no difference to likeness; they are not guessed without a reason.
+            let always = matches!(cause, Variant::Turned { .. });
             let changed = cause.of(&self.sample);
             if !always && self.likeness(&changed) < now + gain {
                 return None;
@@ -370,10 +420,38 @@ impl<'a> Trial<'a> {
 
     /// The answer for one of the frames of a changed sample, from first guesses.
     fn solved(&mut self, sample: &Recording, frame: usize) -> FrameAnswer {
+        let (seen, number) = (self.seen(sample, frame), self.numbers[frame]);
+        let (tracker, scratch) = self.rough();
+        tracker.solve_first(scratch, &seen, number, GUESSES)
+    }
+
+    /// The same from the posture of an answer.
+    fn solved_from(
+        &mut self,
+        sample: &Recording,
+        frame: usize,
+        mut answer: FrameAnswer,
+    ) -> FrameAnswer {
+        let (seen, number) = (self.seen(sample, frame), self.numbers[frame]);
+        let (tracker, scratch) = self.rough();
+        tracker.solve_into(scratch, &seen, number, &mut answer);
+        answer
+    }
+
+    fn seen(&self, sample: &Recording, frame: usize) -> Vec<Option<[f64; 3]>> {
         let row = sample.frame(frame);
-        let seen: Vec<_> = self.labels.iter().map(|&label| row.get(label)?.position()).collect();
-        let scratch = self.scratch.get_or_insert_with(|| Scratch::new(self.tracker));
-        self.tracker.solve_first(scratch, &seen, self.numbers[frame], GUESSES)
+        self.labels.iter().map(|&label| row.get(label)?.position()).collect()
+    }
+
+    /// The tracker at a rough tolerance.
+    fn rough(&mut self) -> &mut (Tracker, Scratch) {
+        let (tracker, rules) = (self.tracker, Rules { tolerance: ROUGHLY, ..self.rules });
+        self.rough.get_or_insert_with(|| {
+            let (model, targets) = (Arc::clone(tracker.model()), tracker.targets().clone());
+            let tracker = Tracker::new(model, targets, rules);
+            let scratch = Scratch::new(&tracker);
+            (tracker, scratch)
+        })
     }
 
     /// The best of the causes tried, and those that are as good, with the errors.

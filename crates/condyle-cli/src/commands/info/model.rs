@@ -1,6 +1,8 @@
-//! A model: segments, coordinates, loops and markers.
+//! A model: segments, coordinates, loops, postures and markers.
 
 use crate::output::{columns, wrapped};
+use condyle::check::circles;
+use condyle::model::PostureTerm;
 use condyle::model::component::Signal;
 use condyle::model::model::Condition;
 use condyle::model::{Closure, UpAxis};
@@ -21,6 +23,7 @@ pub(super) fn to_json(model: &Model) -> Value {
         })
         .collect();
     let keys = keys(model);
+    let circles = circles(model);
     let coordinates: Vec<Value> = model
         .coordinate_ids()
         .map(|id| {
@@ -37,6 +40,7 @@ pub(super) fn to_json(model: &Model) -> Value {
                 "default": default,
                 "range": [coordinate.range.lower, coordinate.range.upper],
                 "clamped": coordinate.range.enforced,
+                "circle": circles.contains(&id),
                 "locked": coordinate.locked,
                 "follows": leader_keys(model, id, &keys),
             })
@@ -44,6 +48,21 @@ pub(super) fn to_json(model: &Model) -> Value {
         .collect();
     let closures: Vec<Value> =
         model.closures().iter().map(|closure| closure_json(model, closure, &keys)).collect();
+    let postures: Vec<Value> = model
+        .postures()
+        .iter()
+        .map(|posture| {
+            let term =
+                |(id, factor): &(CoordinateId, f64)| (keys[id.index()].clone(), json!(factor));
+            json!({
+                "name": posture.name,
+                "sum": posture.sum.iter().map(term).collect::<serde_json::Map<_, _>>(),
+                "rest": posture.rest,
+                "stiffness": posture.stiffness,
+                "source": posture.source,
+            })
+        })
+        .collect();
     let markers: Vec<Value> = model
         .markers()
         .iter()
@@ -63,6 +82,7 @@ pub(super) fn to_json(model: &Model) -> Value {
         "joint_sets": model.joint_sets().iter().map(|set| &set.name).collect::<Vec<_>>(),
         "coordinates": coordinates,
         "closures": closures,
+        "postures": postures,
         "markers": markers,
     })
 }
@@ -163,6 +183,12 @@ pub(super) fn to_text(model: &Model) -> String {
         let rows = model.closures().iter().map(|c| closure_row(model, c, &keys));
         text.push_str(&columns(&rows.collect::<Vec<_>>()));
     }
+    if !model.postures().is_empty() {
+        text.push_str("\npostures, which tracking holds: sum of coordinates, rest, stiffness\n");
+        let keys = keys(model);
+        let rows = model.postures().iter().map(|posture| posture_row(model, posture, &keys));
+        text.push_str(&columns(&rows.collect::<Vec<_>>()));
+    }
     if !model.markers().is_empty() {
         text.push_str("\nmarkers\n");
         text.push_str(&marker_lines(model));
@@ -198,6 +224,7 @@ fn segment_rows(model: &Model) -> Vec<Vec<String>> {
 
 fn coordinate_rows(model: &Model) -> Vec<Vec<String>> {
     let keys = keys(model);
+    let circles = circles(model);
     model
         .coordinate_ids()
         .map(|id| {
@@ -220,6 +247,9 @@ fn coordinate_rows(model: &Model) -> Vec<Vec<String>> {
             let mut marks = vec![];
             if coordinate.range.enforced {
                 marks.push("clamped".to_owned());
+            }
+            if circles.contains(&id) {
+                marks.push("a circle".to_owned());
             }
             if coordinate.locked {
                 marks.push("locked".to_owned());
@@ -277,6 +307,28 @@ fn closure_row(model: &Model, closure: &Closure, keys: &[String]) -> Vec<String>
         (_, None) => String::new(),
     };
     vec![closure.name.clone(), closure_kind(closure).to_owned(), said]
+}
+
+fn posture_row(model: &Model, posture: &PostureTerm, keys: &[String]) -> Vec<String> {
+    let mut sum = String::new();
+    for (id, factor) in &posture.sum {
+        let key = &keys[id.index()];
+        let sign = if *factor < 0.0 { "-" } else { "+" };
+        sum.push_str(&match (sum.is_empty(), factor.abs() == 1.0) {
+            (true, true) if *factor > 0.0 => key.clone(),
+            (true, true) => format!("-{key}"),
+            (true, false) => format!("{factor} {key}"),
+            (false, true) => format!(" {sign} {key}"),
+            (false, false) => format!(" {sign} {} {key}", factor.abs()),
+        });
+    }
+    let kind = |(id, _): &(CoordinateId, f64)| model.coordinate(*id).kind;
+    let kind = posture.sum.first().map_or(CoordinateKind::Other, kind);
+    let rest = amount(kind, posture.rest, false);
+    let stiffness = format!("{:e}", posture.stiffness);
+    // A posture of one coordinate often has its name.
+    let sum = if sum == posture.name { String::new() } else { sum };
+    vec![posture.name.clone(), sum, rest, stiffness]
 }
 
 /// Marker names, one paragraph for each segment that has any.

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::output;
 use condyle::formats::Recording;
-use condyle::tracking::{Determination, Faulty, MarkerErrors, Report, Unused};
+use condyle::tracking::{BeyondRange, Determination, Faulty, Jump, MarkerErrors, Report, Unused};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -20,7 +20,8 @@ pub(super) fn json(trial: &Path, report: &Report, seconds: f64) -> Value {
     );
     let determined = |d: &Determination| {
         let shares = json!({
-            "determined": d.determined, "weak": d.weak, "held": d.held, "not_determined_s": d.spans,
+            "determined": d.determined, "weak": d.weak, "held": d.held, "at_limit": d.at_limit,
+            "not_determined_s": d.spans,
         });
         (d.coordinate.clone(), shares)
     };
@@ -34,6 +35,13 @@ pub(super) fn json(trial: &Path, report: &Report, seconds: f64) -> Value {
         };
         wanted.map(one).collect()
     };
+    let beyond = |b: &BeyondRange| {
+        let [least, greatest] = b.values;
+        let found =
+            json!({ "range": b.range, "least": least, "greatest": greatest, "frames": b.frames });
+        (b.coordinate.clone(), found)
+    };
+    let beyond: serde_json::Map<String, Value> = report.beyond_range.iter().map(beyond).collect();
     json!({
         "trial": trial.to_string_lossy(),
         "frames": s.frames,
@@ -51,7 +59,9 @@ pub(super) fn json(trial: &Path, report: &Report, seconds: f64) -> Value {
         "mostly_at_limit": report.mostly_at_limit,
         "determination": determination,
         "unmoved": report.unmoved,
-        "jumps": report.jumps,
+        "beyond_range": beyond,
+        "jumps": report.jumps.iter().map(|jump| jump.frame).collect::<Vec<_>>(),
+        "jump_details": report.jumps.iter().map(jump_json).collect::<Vec<_>>(),
         "swapped_labels": swaps.collect::<Vec<_>>(),
         "left_out": faulty(true),
         "not_resolved": faulty(false),
@@ -59,11 +69,25 @@ pub(super) fn json(trial: &Path, report: &Report, seconds: f64) -> Value {
             "model": names(&report.unused.model),
             "recording": names(&report.unused.recording),
         },
+        "never_seen": report.unused.never_seen,
+        "without_weight": report.unused.without_weight,
         "verdict": {
             "plausible": report.verdict.plausible,
             "cause": report.verdict.cause.as_ref().map(|cause| &cause.message),
         },
         "markers": markers,
+    })
+}
+
+fn jump_json(jump: &Jump) -> Value {
+    let (coordinate, change) = jump.coordinate.as_ref().map(|(key, by)| (key, by)).unzip();
+    json!({
+        "frame": jump.frame,
+        "segment": jump.segment,
+        "turn_rad": jump.turn,
+        "coordinate": coordinate,
+        "change_rad": change,
+        "cause": jump.cause.to_string(),
     })
 }
 
@@ -112,14 +136,16 @@ pub(super) fn print(
             first.status.name()
         ));
     }
-    text.push_str(&unused("model", "recording", &report.unused.model));
-    text.push_str(&unused("recording", "model", &report.unused.recording));
+    text.push_str(&left_out("never seen", &report.unused.never_seen));
+    text.push_str(&left_out("of weight 0", &report.unused.without_weight));
+    text.push_str(&unused("model", "recording", report, &report.unused.model));
+    text.push_str(&unused("recording", "model", report, &report.unused.recording));
     if !report.mostly_at_limit.is_empty() {
         let keys = few(report.mostly_at_limit.iter().cloned());
         text.push_str(&format!("  mostly at a limit: {keys}\n"));
     }
     let unsure = report.determination.iter();
-    let unsure = unsure.filter(|d| d.determined < 0.9 && !report.unmoved.contains(&d.coordinate));
+    let unsure = unsure.filter(|d| !d.is_sure() && !report.unmoved.contains(&d.coordinate));
     let unsure: Vec<String> = unsure.map(|d| d.coordinate.clone()).collect();
     if !unsure.is_empty() {
         text.push_str(&format!(
@@ -131,11 +157,23 @@ pub(super) fn print(
         let keys = few(report.unmoved.iter().cloned());
         text.push_str(&format!("  move no marker, held at rest: {keys}\n"));
     }
-    if let [first, ..] = report.jumps[..] {
-        let n = report.jumps.len();
+    for beyond in &report.beyond_range {
+        let degrees = |values: [f64; 2]| values.map(|value| format!("{:.1}°", value.to_degrees()));
+        let ([least, greatest], [lower, upper]) = (degrees(beyond.values), degrees(beyond.range));
         text.push_str(&format!(
-            "  {n} jumps of more than 60 degrees, the first at frame {first}\n"
+            "  `{}` runs from {least} to {greatest}, beyond its range {lower} to {upper}: whole turns are the \
+             same posture\n",
+            beyond.coordinate
         ));
+    }
+    let most = report.jumps.iter().max_by(|a, b| a.turn.total_cmp(&b.turn));
+    if let (Some(most), [first, ..]) = (most, &report.jumps[..]) {
+        let n = report.jumps.len();
+        let (noun, which) = match n {
+            1 => ("jump", String::new()),
+            _ => ("jumps", format!("the first at frame {}, the greatest at ", first.frame)),
+        };
+        text.push_str(&format!("  {n} {noun} of more than 60 degrees: {which}{most}\n"));
     }
     if let Some(cause) = &report.verdict.cause {
         text.push_str(&format!("  not plausible: {}\n", cause.sentence()));
@@ -160,17 +198,29 @@ fn few(names: impl ExactSizeIterator<Item = String>) -> String {
     list
 }
 
-/// A line about the names of one side that were not used, those with a likely partner first.
-fn unused(side: &str, other: &str, unused: &[Unused]) -> String {
-    if unused.is_empty() {
+/// A line about markers that both sides have and that were not used all the same.
+fn left_out(why: &str, names: &[String]) -> String {
+    if names.is_empty() {
         return String::new();
     }
-    let mut sorted: Vec<&Unused> = unused.iter().collect();
+    let quoted = names.iter().map(|name| format!("`{name}`"));
+    format!("  {} {why}, not used: {}\n", names.len(), few(quoted))
+}
+
+/// A line about the names of one side that the other does not have, those with a likely partner first.
+fn unused(side: &str, other: &str, report: &Report, unused: &[Unused]) -> String {
+    let said = [&report.unused.never_seen, &report.unused.without_weight];
+    let known = |one: &&Unused| said.iter().any(|names| names.contains(&one.name));
+    let mut sorted: Vec<&Unused> = unused.iter().filter(|one| !known(one)).collect();
+    if sorted.is_empty() {
+        return String::new();
+    }
     sorted.sort_by_key(|one| one.partner.is_none());
     let said = sorted.iter().map(|one| match &one.partner {
         Some(partner) => format!("`{}` (is it the {other}'s `{partner}`?)", one.name),
         None => format!("`{}`", one.name),
     });
-    let noun = if unused.len() == 1 { "marker" } else { "markers" };
-    format!("  {} {noun} of the {side} not used: {}\n", unused.len(), few(said))
+    let n = sorted.len();
+    let noun = if n == 1 { "marker" } else { "markers" };
+    format!("  {n} {noun} of the {side} not used: {}\n", few(said))
 }
