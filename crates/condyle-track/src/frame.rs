@@ -81,6 +81,15 @@ impl Tracker {
         }
         let mut best =
             best.unwrap_or_else(|| self.solve_frame(scratch, seen, frame, &self.defaults));
+        if let Some(start) = self.outward(scratch, seen, frame, &best) {
+            let mut answer = self.solve_frame(scratch, seen, frame, &start.coordinates);
+            if self.unwind(&mut answer.coordinates) {
+                self.solve_into(scratch, seen, frame, &mut answer);
+            }
+            if self.preferred(&answer, &best) {
+                best = answer;
+            }
+        }
         for guess in 0..self.limbs.len() {
             self.try_limb(scratch, seen, frame, guess, &mut best);
         }
