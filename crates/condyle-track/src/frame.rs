@@ -93,6 +93,7 @@ impl Tracker {
         for guess in 0..self.limbs.len() {
             self.try_limb(scratch, seen, frame, guess, &mut best);
         }
+        self.cross_bounds(scratch, seen, frame, &mut best);
         best
     }
 
@@ -197,7 +198,7 @@ impl Tracker {
         }
     }
 
-    /// Where a joint is at a bound, tries its other three angles, if the ranges allow them.
+    /// Where a joint is at a bound, tries where else it could be.
     fn cross_bounds(
         &self,
         scratch: &mut Scratch,
@@ -205,14 +206,17 @@ impl Tracker {
         frame: usize,
         answer: &mut FrameAnswer,
     ) {
-        let mut across = self.branches.across_bounds(&answer.coordinates, &self.stored);
-        let Some(other) = across.next() else { return };
-        drop(across);
-        let mut start = answer.coordinates.clone();
-        other.iter().for_each(|&(place, q)| start[place] = q);
-        let again = self.solve_frame(scratch, seen, frame, &start);
-        if again.minimised() < answer.minimised() * (1.0 - SWITCH) && better(&again, answer) {
-            *answer = again;
+        if self.branches.across_bounds(&answer.coordinates, &self.stored).next().is_none() {
+            return;
+        }
+        let stored = answer.coordinates.clone();
+        for other in self.branches.across_bounds(&stored, &self.stored) {
+            let mut start = answer.coordinates.clone();
+            other.iter().for_each(|&(place, q)| start[place] = q);
+            let again = self.solve_frame(scratch, seen, frame, &start);
+            if again.minimised() < answer.minimised() * (1.0 - SWITCH) && better(&again, answer) {
+                *answer = again;
+            }
         }
     }
 

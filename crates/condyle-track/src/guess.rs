@@ -15,8 +15,8 @@ const LIMB_GUESSES: usize = 3;
 
 /// A limb fits where its markers are no more than so many times (squared) as far off as the others, or
 /// within 3 mm.
-const FITS: f64 = 4.0;
-const FITS_FLOOR: f64 = 1e-5;
+const FITS: f64 = 1.0;
+const FITS_FLOOR: f64 = 1e-6;
 /// So many markers of a segment say how it is turned.
 const TURNED_BY: usize = 3;
 
@@ -80,7 +80,7 @@ impl Limb {
         limbs
     }
 
-    /// A posture with the limb at all other quarter turns that its ranges allow.
+    /// A posture with the limb at all other quarter turns, or as near to them as its ranges allow.
     fn turned(&self, stored: &[f64]) -> Vec<Vec<f64>> {
         let mut turned = vec![];
         if let Some(place) = self.ball {
@@ -95,15 +95,15 @@ impl Limb {
         for combination in 1..4usize.pow(self.rotations.len() as u32) {
             let mut stored = stored.to_vec();
             let mut digits = combination;
-            let mut legal = true;
             for &(place, lower, upper) in &self.rotations {
                 let value = stored[place] + (digits % 4) as f64 * FRAC_PI_2;
-                let inside = [value, value - TAU].into_iter().find(|q| (lower..=upper).contains(q));
-                legal &= inside.is_some();
-                stored[place] = inside.unwrap_or(stored[place]);
+                let held = |q: f64| q.max(lower).min(upper);
+                let beyond = |q: f64| (q - held(q)).abs();
+                let [one, other] = [value, value - TAU];
+                stored[place] = held(if beyond(one) <= beyond(other) { one } else { other });
                 digits /= 4;
             }
-            if legal {
+            if !turned.contains(&stored) {
                 turned.push(stored);
             }
         }

@@ -54,7 +54,7 @@ impl Dice {
 }
 
 /// How a segment moves in its parent.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 enum Joint {
     /// Three slides and three turns without ends.
     Free,
@@ -70,7 +70,7 @@ enum Joint {
     Follower { axis: Vec3, leader: usize, share: f64, offset: f64 },
 }
 
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 struct Part {
     parent: Option<usize>,
     /// The joint in the parent, turned by a rotation vector, and in the segment.
@@ -204,6 +204,10 @@ impl Body {
             rests.push(Rest { terms, rest: 0.5 * dice.unit(), stiffness: 1e-5 });
         }
         rests
+    }
+
+    pub(crate) fn describe(&self, part: usize) -> String {
+        format!("{:?} {} markers", self.parts[part], self.points.iter().filter(|p| p.part == part).count())
     }
 
     pub(crate) fn points_len(&self) -> usize {

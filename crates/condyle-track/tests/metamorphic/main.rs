@@ -272,6 +272,16 @@ fn each_frame_alone() {
             total += 1;
             if best.status.is_solved() && alone.status.is_solved() && ratio > 1.001 {
                 missed.push((frame, ratio));
+                if std::env::var("EACH").is_ok() && missed.len() < 3 {
+                    let plain = &trial.plain;
+                    println!("body {seed} frame {frame} ratio {ratio} F {:.2e} {:?} {:?}", best.minimised(), alone.status, best.status);
+                    let fake = |answer: &condyle_track::FrameAnswer| Tracked { body: plain.body, tracker: plain.tracker.clone(), answers: vec![answer.clone()], trust: vec![] };
+                    let (a, b) = (fake(&alone), fake(&best));
+                    for part in 0..plain.body.parts_len() {
+                        let off = a.turns(0)[part].angle_to(b.turns(0)[part]);
+                        println!("    part {part} off {off:.3} alone {:.3?} best {:.3?} {}", a.numbers(0, part), b.numbers(0, part), plain.body.describe(part));
+                    }
+                }
             }
         }
         frames += missed.len();
