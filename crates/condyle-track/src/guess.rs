@@ -17,6 +17,8 @@ const LIMB_GUESSES: usize = 3;
 /// within 3 mm.
 const FITS: f64 = 1.0;
 const FITS_FLOOR: f64 = 1e-6;
+/// Beyond so many times (squared) the distance of all markers a limb is odd.
+const ODD: f64 = 2.0;
 /// So many markers of a segment say how it is turned.
 const TURNED_BY: usize = 3;
 
@@ -30,6 +32,8 @@ pub(crate) struct Limb {
     ball: Option<usize>,
     /// The groups of markers that it moves.
     groups: Vec<usize>,
+    /// Those of them that no limb farther out moves, if there are any.
+    direct: Vec<usize>,
 }
 
 impl Limb {
@@ -59,7 +63,13 @@ impl Limb {
             let joint_set = model.coordinate(id).joint_set;
             let own = limbs.iter().position(|limb| limb.joint_set == joint_set);
             let own = own.unwrap_or_else(|| {
-                limbs.push(Self { joint_set, rotations: vec![], ball: None, groups: vec![] });
+                limbs.push(Self {
+                    joint_set,
+                    rotations: vec![],
+                    ball: None,
+                    groups: vec![],
+                    direct: vec![],
+                });
                 limbs.len() - 1
             });
             let limb = &mut limbs[own];
@@ -77,6 +87,11 @@ impl Limb {
             limb.groups.dedup();
         }
         limbs.sort_by_key(|limb| std::cmp::Reverse(limb.groups.len()));
+        for i in 0..limbs.len() {
+            let (limb, farther) = limbs[i..].split_first_mut().expect("it is one of them");
+            let direct = |g: &usize| !farther.iter().any(|limb| limb.groups.contains(g));
+            limb.direct = limb.groups.iter().copied().filter(direct).collect();
+        }
         limbs
     }
 
@@ -184,6 +199,36 @@ impl Tracker {
         }
     }
 
+    /// Tries the limbs at other quarter turns of which the markers are much farther off than all are on average:
+    /// an answer that was followed from another may have been wrong for long without a jump.
+    pub(crate) fn try_odd_limbs(
+        &self,
+        scratch: &mut Scratch,
+        seen: &[Option<[f64; 3]>],
+        frame: usize,
+        answer: &mut FrameAnswer,
+    ) {
+        for limb in 0..self.limbs.len() {
+            let groups = &self.limbs[limb].direct;
+            let own = |group: Option<usize>| group.is_some_and(|g| groups.contains(&g));
+            let own = self.mean(scratch, seen, &answer.coordinates, own);
+            let all = self.mean(scratch, seen, &answer.coordinates, |_| true);
+            let Some((own, all)) = own.zip(all) else { continue };
+            if own <= ODD * all + FITS_FLOOR {
+                continue;
+            }
+            let guesses = self.best_turned(scratch, seen, limb, groups, &answer.coordinates);
+            for guess in guesses {
+                let mut again = self.solve_frame(scratch, seen, frame, &guess);
+                let numbers = &mut again.coordinates;
+                self.branches.bring_near(numbers, &answer.coordinates, &self.stored);
+                if self.replaces(&again, answer) {
+                    *answer = again;
+                }
+            }
+        }
+    }
+
     /// A posture that is built from the root outwards, to begin a descent with: first the markers that no
     /// limb moves, from `start` if there are too few, then those of one limb after another, each at the best of
     /// its quarter turns. Markers farther out cannot lead an inner joint astray.
@@ -219,15 +264,13 @@ impl Tracker {
         for (limb, hidden) in (1..=self.limbs.len()).enumerate() {
             let (before, hidden) = (now, &self.limbs[hidden..]);
             now = shown(hidden);
-            let groups: Vec<usize> = self.limbs[limb].groups.clone();
-            let groups: Vec<usize> =
-                groups.into_iter().filter(|&g| !groups_of(hidden, Some(g))).collect();
+            let groups = &self.limbs[limb].direct;
             let own = |group: Option<usize>| group.is_some_and(|g| groups.contains(&g));
             let mut best = self.solve_frame(scratch, &now, frame, &answer.coordinates);
             let Some(off) = self.mean(scratch, &now, &best.coordinates, own) else { continue };
             let others = self.mean(scratch, &before, &best.coordinates, |_| true).unwrap_or(0.0);
             if off > FITS * others + FITS_FLOOR {
-                let guesses = self.best_turned(scratch, &now, limb, &groups, &answer.coordinates);
+                let guesses = self.best_turned(scratch, &now, limb, groups, &answer.coordinates);
                 for guess in guesses {
                     let one = self.solve_frame(scratch, &now, frame, &guess);
                     if better(&one, &best) {

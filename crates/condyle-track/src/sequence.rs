@@ -52,6 +52,7 @@ pub fn keys(
                 let mut answer = before.clone();
                 scratch.solver.forget();
                 tracker.follow(scratch, &seen, frame, &mut answer, false);
+                tracker.try_odd_limbs(scratch, &seen, frame, &mut answer);
                 answer
             }
         };

@@ -291,3 +291,33 @@ fn each_frame_alone() {
     }
     println!("alone: {frames} of {total} frames above 1.001 times");
 }
+
+#[test]
+fn probe() {
+    let Ok(what) = std::env::var("PROBE") else { return };
+    let words: Vec<usize> = what.split(' ').map(|w| w.parse().unwrap()).collect();
+    let (seed, from, to, length, cut) = (words[0], words[1], words[2], words[3], words[4]);
+    let body = Body::random(seed as u64);
+    let (truth, rows) = recorded(&body, seed as u64);
+    for part in 0..body.parts_len() {
+        println!("{part}: {}", body.describe(part));
+    }
+    let all: Vec<usize> = (0..body.points_len()).collect();
+    let plain = Tracked::plain(&body, &rows);
+    let part_rows = rows[cut..].to_vec();
+    let other = Tracked::of(&body, body.tracker(&all, &[]), &part_rows, Some(length));
+    let mut scratch = condyle_track::Scratch::new(&plain.tracker);
+    for frame in from..to {
+        let best = plain.tracker.solve_frame(&mut scratch, &rows[frame], frame, &truth[frame]);
+        let alone = plain.tracker.solve_first(&mut scratch, &rows[frame], frame, 4);
+        let seen = rows[frame].iter().flatten().count();
+        println!("frame {frame} seen {seen} truth {:.3e} plain {:.3e} other {:.3e} alone {:.3e}", best.minimised(), plain.answers[frame].minimised(), other.answers[frame - cut].minimised(), alone.minimised());
+        let fake = Tracked { body: &body, tracker: plain.tracker.clone(), answers: vec![best], trust: vec![] };
+        for part in 0..body.parts_len() {
+            let (a, b, t) = (plain.turns(frame)[part], other.turns(frame - cut)[part], fake.turns(0)[part]);
+            if a.angle_to(b) > 0.01 || a.angle_to(t) > 0.01 {
+                println!("    part {part} plain {:.3?} other {:.3?} truth {:.3?} {}", plain.numbers(frame, part), other.numbers(frame - cut, part), fake.numbers(0, part), plain.determines(frame, part));
+            }
+        }
+    }
+}
