@@ -5,7 +5,7 @@ use crate::target::Markers;
 use crate::tracker::{FIXED, Scratch, Tracker};
 use condyle_math::{Quat, Vec3};
 use condyle_model::{CoordinateId, CoordinateKind, JointSetId, Mode, Model};
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::FRAC_PI_2;
 
 /// At most so many angles are tried at all quarter turns.
 const MOST_TURNED: usize = 3;
@@ -107,21 +107,26 @@ impl Limb {
                 turned.push(stored);
             }
         }
-        for combination in 1..4usize.pow(self.rotations.len() as u32) {
-            let mut stored = stored.to_vec();
-            let mut digits = combination;
-            for &(place, lower, upper) in &self.rotations {
-                let value = stored[place] + (digits % 4) as f64 * FRAC_PI_2;
-                let held = |q: f64| q.max(lower).min(upper);
-                let beyond = |q: f64| (q - held(q)).abs();
-                let [one, other] = [value, value - TAU];
-                stored[place] = held(if beyond(one) <= beyond(other) { one } else { other });
-                digits /= 4;
+        let mut combined = vec![stored.to_vec()];
+        for &(place, lower, upper) in &self.rotations {
+            // Half a turn either way is not the same where there are ends.
+            let last = if lower.is_finite() && upper.is_finite() { 2 } else { 1 };
+            let mut values: Vec<f64> = vec![];
+            for quarters in [0, 1, 2, -1, -2].into_iter().filter(|q| *q >= -last) {
+                let value = stored[place] + f64::from(quarters) * FRAC_PI_2;
+                let value = value.max(lower).min(upper);
+                if !values.contains(&value) {
+                    values.push(value);
+                }
             }
-            if !turned.contains(&stored) {
-                turned.push(stored);
-            }
+            let with = |value: &f64, stored: &Vec<f64>| {
+                let mut stored = stored.clone();
+                stored[place] = *value;
+                stored
+            };
+            combined = values.iter().flat_map(|v| combined.iter().map(|s| with(v, s))).collect();
         }
+        turned.extend(combined.into_iter().skip(1));
         turned
     }
 }

@@ -131,8 +131,14 @@ impl Body {
         }
         let mut points = vec![];
         for part in 0..parts.len() {
-            // Most have three or four; with fewer their joints are not always determined.
-            for _ in 0..[4, 3, 4, 3, 4, 2, 1][dice.below(7)].max(if part == 0 { 3 } else { 0 }) {
+            // A hinge may have one or two; with so few several angles have mirrored solutions.
+            let hinge = match &parts[part].joint {
+                Joint::Turns(turns) => turns.len() == 1,
+                Joint::Gliding { .. } | Joint::Follower { .. } => true,
+                _ => false,
+            };
+            let count = [4, 3, 4, 3, 4, 2, 1][dice.below(7)];
+            for _ in 0..if hinge { count } else { count.max(3) } {
                 let weight = [1.0, 1.0, 1.0, 2.0, 0.5, 10.0][dice.below(6)];
                 points.push(Point { part, place: dice.vector(0.3), weight });
             }
@@ -190,7 +196,11 @@ impl Body {
     }
 
     fn random_rests(&self, dice: &mut Dice) -> Vec<Rest> {
-        let turns = |part: &usize| matches!(self.parts[*part].joint, Joint::Turns(_));
+        // A rest tells whole turns apart, so only what cannot turn wholly has one.
+        let turns = |part: &usize| match &self.parts[*part].joint {
+            Joint::Turns(turns) => turns[0].1 < 3.0 && turns[0].1 != 0.95 * PI,
+            _ => false,
+        };
         let bearers: Vec<usize> = (0..self.parts.len()).filter(turns).collect();
         let mut rests = vec![];
         for (i, &part) in bearers.iter().enumerate() {

@@ -37,7 +37,7 @@ pub(crate) fn recorded(body: &Body, seed: u64) -> (Vec<Vec<f64>>, Rows) {
             }),
             CoordinateKind::Translation => Box::new(move |t| vec![wave(t)]),
             _ if most > 3.0 => Box::new(move |t| vec![speed * t + 0.3 * wave(t)]),
-            _ => Box::new(move |t| vec![1.1 * most * wave(t)]),
+            _ => Box::new(move |t| vec![1.03 * most * wave(t)]),
         });
     }
     let offsets: Vec<Vec3> = (0..body.points_len()).map(|_| dice.vector(0.004)).collect();
