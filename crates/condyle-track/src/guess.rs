@@ -1,7 +1,7 @@
 //! Where to begin when nothing is known: the whole model at quarter turns, then each limb.
 
 use crate::answer::{FrameAnswer, better};
-use crate::target::Markers;
+use crate::target::{Markers, Placed};
 use crate::tracker::{FIXED, Scratch, Tracker};
 use condyle_math::{Quat, Vec3};
 use condyle_model::{CoordinateId, CoordinateKind, JointSetId, Mode, Model};
@@ -13,10 +13,10 @@ const MOST_TURNED: usize = 3;
 /// How many of a limb's quarter turns are solved.
 const LIMB_GUESSES: usize = 3;
 
-/// A limb fits where its markers are no more than so many times (squared) as far off as the others, or
-/// within 3 mm.
-const FITS: f64 = 1.0;
-const FITS_FLOOR: f64 = 1e-6;
+/// A limb fits where its markers, and all so far, are no more than so many times (squared) as far off as those
+/// before it, and 3 mm.
+const FITS: f64 = 1.5;
+const FITS_FLOOR: f64 = 1e-5;
 /// Beyond so many times (squared) the distance of all markers a limb is odd.
 const ODD: f64 = 2.0;
 /// So many markers of a segment say how it is turned.
@@ -256,7 +256,8 @@ impl Tracker {
         }
         let mut now = shown(&self.limbs);
         let mut answer = start.clone();
-        if now.iter().flatten().count() >= TURNED_BY {
+        let counts = |(marker, seen): (&Placed, &Option<_>)| marker.weight > 0.0 && seen.is_some();
+        if self.markers.placed.iter().zip(&now).filter(|&pair| counts(pair)).count() >= TURNED_BY {
             let mut best: Option<FrameAnswer> = None;
             for guess in self.first_guesses(scratch, &now, TURNED_BY) {
                 let one = self.solve_frame(scratch, &now, frame, &guess);
@@ -273,8 +274,9 @@ impl Tracker {
             let own = |group: Option<usize>| group.is_some_and(|g| groups.contains(&g));
             let mut best = self.solve_frame(scratch, &now, frame, &answer.coordinates);
             let Some(off) = self.mean(scratch, &now, &best.coordinates, own) else { continue };
-            let others = self.mean(scratch, &before, &best.coordinates, |_| true).unwrap_or(0.0);
-            if off > FITS * others + FITS_FLOOR {
+            let all = self.mean(scratch, &now, &best.coordinates, |_| true).unwrap_or(off);
+            let others = self.mean(scratch, &before, &answer.coordinates, |_| true).unwrap_or(0.0);
+            if off.max(all) > FITS * others + FITS_FLOOR {
                 let guesses = self.best_turned(scratch, &now, limb, groups, &answer.coordinates);
                 for guess in guesses {
                     let one = self.solve_frame(scratch, &now, frame, &guess);

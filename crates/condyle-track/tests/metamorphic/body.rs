@@ -70,6 +70,14 @@ enum Joint {
     Follower { axis: Vec3, leader: usize, share: f64, offset: f64 },
 }
 
+impl Joint {
+    /// Whether its first angle has one number for a posture, neither whole turns nor the other three angles:
+    /// what follows it, and its rest, tell those apart.
+    fn has_one_number(&self) -> bool {
+        matches!(self, Self::Turns(turns) if turns[0].1 < 1.5)
+    }
+}
+
 #[derive(Clone, Debug)]
 struct Part {
     parent: Option<usize>,
@@ -164,7 +172,7 @@ impl Body {
         // A circle, nearly one, arms and knees, and none.
         let mosts = [PI, 0.95 * PI, 1.2, 2.4, f64::INFINITY];
         let most = mosts[dice.below(5)];
-        let angles = |part: &Part| matches!(part.joint, Joint::Turns(_));
+        let angles = |part: &Part| part.joint.has_one_number();
         let leaders: Vec<usize> = (0..parts.len()).filter(|&i| angles(&parts[i])).collect();
         match dice.below(8) {
             0 => Joint::Ball,
@@ -196,12 +204,8 @@ impl Body {
     }
 
     fn random_rests(&self, dice: &mut Dice) -> Vec<Rest> {
-        // A rest tells whole turns apart, so only what cannot turn wholly has one.
-        let turns = |part: &usize| match &self.parts[*part].joint {
-            Joint::Turns(turns) => turns[0].1 < 3.0 && turns[0].1 != 0.95 * PI,
-            _ => false,
-        };
-        let bearers: Vec<usize> = (0..self.parts.len()).filter(turns).collect();
+        let bears = |part: &usize| self.parts[*part].joint.has_one_number();
+        let bearers: Vec<usize> = (0..self.parts.len()).filter(bears).collect();
         let mut rests = vec![];
         for (i, &part) in bearers.iter().enumerate() {
             if dice.below(3) == 0 {

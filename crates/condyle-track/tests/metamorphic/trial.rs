@@ -207,8 +207,9 @@ pub(crate) fn compare(a: &Tracked<'_>, b: &Tracked<'_>, how: &Against<'_>) -> Of
             let turn = (how.image)(part, turns[part]).angle_to(others[part]);
             let (p, q) = (a.numbers(frame, part), b.numbers(other, part));
             let ball = matches!(p.len(), 4 | 7);
-            let number = p.iter().zip(&q).map(|(p, q)| (p - q).abs()).fold(0.0, f64::max);
-            let number = if ball { 0.0 } else { number };
+            let places = if part == 0 { 3 } else { 0 };
+            let numbers = p.iter().zip(&q).skip(places).map(|(p, q)| (p - q).abs());
+            let number = if ball { 0.0 } else { numbers.fold(0.0, f64::max) };
             let at = [String::new(), place(part), place(part)];
             frame_off.add(Off { turn, number, at, compared: 1, ..Off::default() });
         }
