@@ -134,11 +134,12 @@ impl Tracker {
         if !alike || a.status != b.status {
             return better(a, b);
         }
-        let away = |answer: &FrameAnswer| -> f64 {
-            let turns = self.turns(&answer.coordinates, &self.defaults);
-            turns.map(|(_, turn)| turn.powi(2)).sum()
-        };
-        away(a) < away(b) - 1e-6
+        self.away(&a.coordinates) < self.away(&b.coordinates) - 1e-6
+    }
+
+    /// The sum of the squared rotations away from the defaults.
+    pub(crate) fn away(&self, stored: &[f64]) -> f64 {
+        self.turns(stored, &self.defaults).map(|(_, turn)| turn.powi(2)).sum()
     }
 
     /// The largest change of a rotation between two answers, in radians.

@@ -19,6 +19,8 @@ const FITS: f64 = 1.5;
 const FITS_FLOOR: f64 = 1e-5;
 /// Beyond so many times (squared) the distance of all markers a limb is odd.
 const ODD: f64 = 2.0;
+/// Two orientations whose markers are as far off, but for this share, are the same.
+const SAME: f64 = 1e-9;
 /// So many markers of a segment say how it is turned.
 const TURNED_BY: usize = 3;
 
@@ -331,7 +333,14 @@ impl Tracker {
             }
         }
         guesses.sort_by(|a, b| a.0.total_cmp(&b.0));
-        guesses.dedup_by(|a, b| a.1 == b.1);
+        // Three angles name most orientations twice; of these the one nearer to the defaults is tried.
+        guesses.dedup_by(|later, kept| {
+            let same = later.0 - kept.0 <= SAME * kept.0;
+            if same && self.away(&later.1) < self.away(&kept.1) {
+                std::mem::swap(later, kept);
+            }
+            same
+        });
         guesses.truncate(most.max(1));
         guesses.into_iter().map(|(_, stored)| stored).collect()
     }

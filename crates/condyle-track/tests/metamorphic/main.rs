@@ -315,8 +315,8 @@ fn probe() {
         let fake = Tracked { body: &body, tracker: plain.tracker.clone(), answers: vec![best], trust: vec![] };
         for part in 0..body.parts_len() {
             let (a, b, t) = (plain.turns(frame)[part], other.turns(frame - cut)[part], fake.turns(0)[part]);
-            if a.angle_to(b) > 0.01 || a.angle_to(t) > 0.01 {
-                println!("    part {part} plain {:.3?} other {:.3?} truth {:.3?} {}", plain.numbers(frame, part), other.numbers(frame - cut, part), fake.numbers(0, part), plain.determines(frame, part));
+            if a.angle_to(b) > 0.0001 || a.angle_to(t) > 0.0001 {
+                println!("    part {part} plain {:.5?} other {:.5?} truth {:.5?} {}", plain.numbers(frame, part), other.numbers(frame - cut, part), fake.numbers(0, part), plain.determines(frame, part));
             }
         }
     }
