@@ -18,7 +18,9 @@ const LIMB_GUESSES: usize = 3;
 const FITS: f64 = 1.5;
 const FITS_FLOOR: f64 = 1e-5;
 /// Beyond so many times (squared) the distance of all markers a limb is odd.
-const ODD: f64 = 2.0;
+const ODD: f64 = 4.0;
+/// Closer than 10 mm RMS hardly a limb is in a wrong minimum without being odd.
+const CLOSE: f64 = 1e-4;
 /// Two orientations whose markers are as far off, but for this share, are the same.
 const SAME: f64 = 1e-9;
 /// So many markers of a segment say how it is turned.
@@ -138,9 +140,8 @@ const QUARTERS: usize = 64;
 
 /// Quarter turns about Y, X and Z, a digit each.
 fn quarter_turns(combination: usize) -> Quat {
-    let turn = |axis, quarters: usize| {
-        Quat::from_axis_angle(axis, (quarters % 4) as f64 * FRAC_PI_2)
-    };
+    let turn =
+        |axis, quarters: usize| Quat::from_axis_angle(axis, (quarters % 4) as f64 * FRAC_PI_2);
     turn(Vec3::Y, combination) * turn(Vec3::X, combination / 4) * turn(Vec3::Z, combination / 16)
 }
 
@@ -206,37 +207,48 @@ impl Tracker {
         }
     }
 
-    /// Tries the limbs at other quarter turns of which the markers are much farther off than all are on average:
-    /// an answer that was followed from another may have been wrong for long without a jump.
-    pub(crate) fn try_odd_limbs(
+    /// The limb of which the markers are farthest off compared with all, if any is much; and how much (squared).
+    pub(crate) fn odd_limb(
+        &self,
+        scratch: &mut Scratch,
+        seen: &[Option<[f64; 3]>],
+        stored: &[f64],
+    ) -> Option<(usize, f64)> {
+        let all = self.mean(scratch, seen, stored, |_| true)? + FITS_FLOOR;
+        let ratio = |(i, limb): (usize, &Limb)| {
+            let own = |group: Option<usize>| group.is_some_and(|g| limb.direct.contains(&g));
+            self.mean(scratch, seen, stored, own).map(|own| (i, own / all))
+        };
+        let ratios = self.limbs.iter().enumerate().filter_map(ratio);
+        ratios.filter(|(_, ratio)| *ratio > ODD).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Tries an odd limb at other quarter turns; whether one is better.
+    pub(crate) fn try_odd_limb(
         &self,
         scratch: &mut Scratch,
         seen: &[Option<[f64; 3]>],
         frame: usize,
+        limb: usize,
         answer: &mut FrameAnswer,
-    ) {
-        for limb in 0..self.limbs.len() {
-            let groups = &self.limbs[limb].direct;
-            let own = |group: Option<usize>| group.is_some_and(|g| groups.contains(&g));
-            let own = self.mean(scratch, seen, &answer.coordinates, own);
-            let all = self.mean(scratch, seen, &answer.coordinates, |_| true);
-            let Some((own, all)) = own.zip(all) else { continue };
-            if own <= ODD * all + FITS_FLOOR {
-                continue;
-            }
-            let guesses = self.best_turned(scratch, seen, limb, groups, &answer.coordinates);
-            for guess in guesses {
-                let mut again = self.solve_frame(scratch, seen, frame, &guess);
-                let numbers = &mut again.coordinates;
-                self.branches.bring_near(numbers, &answer.coordinates, &self.stored);
-                if self.replaces(&again, answer) {
-                    *answer = again;
-                }
+    ) -> bool {
+        let groups = &self.limbs[limb].direct;
+        let mut found = false;
+        for guess in self.best_turned(scratch, seen, limb, groups, &answer.coordinates) {
+            let mut again = self.solve_frame(scratch, seen, frame, &guess);
+            let numbers = &mut again.coordinates;
+            self.branches.bring_near(numbers, &answer.coordinates, &self.stored);
+            again.iterations += answer.iterations;
+            if self.replaces(&again, answer) {
+                (*answer, found) = (again, true);
+            } else {
+                answer.iterations = again.iterations;
             }
         }
+        found
     }
 
-    /// A posture that is built from the root outwards, to begin a descent with: first the markers that no
+    /// A posture that is built from the root outwards, to begin a descent with, unless `start` fits closely: first the markers that no
     /// limb moves, from `start` if there are too few, then those of one limb after another, each at the best of
     /// its quarter turns. Markers farther out cannot lead an inner joint astray.
     pub(crate) fn outward(
@@ -253,7 +265,8 @@ impl Tracker {
             let markers = self.markers.placed.iter().zip(seen);
             markers.map(|(m, seen)| seen.filter(|_| !groups_of(hidden, m.group))).collect()
         };
-        if self.limbs.is_empty() {
+        let odd = self.odd_limb(scratch, seen, &start.coordinates);
+        if self.limbs.is_empty() || (odd.is_none() && start.minimised() < CLOSE) {
             return None;
         }
         let mut now = shown(&self.limbs);

@@ -54,7 +54,7 @@ impl Dice {
 }
 
 /// How a segment moves in its parent.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 enum Joint {
     /// Three slides and three turns without ends.
     Free,
@@ -78,7 +78,7 @@ impl Joint {
     }
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 struct Part {
     parent: Option<usize>,
     /// The joint in the parent, turned by a rotation vector, and in the segment.
@@ -220,10 +220,6 @@ impl Body {
         rests
     }
 
-    pub(crate) fn describe(&self, part: usize) -> String {
-        format!("{:?} {} markers", self.parts[part], self.points.iter().filter(|p| p.part == part).count())
-    }
-
     pub(crate) fn points_len(&self) -> usize {
         self.points.len()
     }
@@ -276,11 +272,6 @@ impl Body {
         let mut body = self.clone();
         body.points.iter_mut().for_each(|p| p.weight *= factor);
         body
-    }
-
-    /// The weight of each marker.
-    pub(crate) fn weights(&self) -> Vec<f64> {
-        self.points.iter().map(|p| p.weight).collect()
     }
 
     pub(crate) fn build(&self) -> Model {
@@ -401,10 +392,11 @@ impl Body {
             let target = MarkerTarget { marker: place(i), weight: half * self.points[i].weight };
             markers.push(target);
         }
-        markers.extend(twice.iter().map(|&i| MarkerTarget {
-            marker: place(i),
-            weight: 0.5 * self.points[i].weight,
-        }));
+        markers.extend(
+            twice
+                .iter()
+                .map(|&i| MarkerTarget { marker: place(i), weight: 0.5 * self.points[i].weight }),
+        );
         let postures = self.rests.iter().map(|rest| PostureTarget {
             terms: rest.terms.iter().map(|&(part, i, f)| (self.find(&model, part, i), f)).collect(),
             rest: rest.rest,
@@ -416,7 +408,8 @@ impl Body {
     }
 
     fn find(&self, model: &Model, part: usize, angle: usize) -> CoordinateId {
-        let (set, name) = (format!("{}joint{part}", self.prefix), format!("{}angle{angle}", self.prefix));
+        let (set, name) =
+            (format!("{}joint{part}", self.prefix), format!("{}angle{angle}", self.prefix));
         let named = |id: &CoordinateId| {
             let coordinate = model.coordinate(*id);
             model.joint_sets()[coordinate.joint_set.index()].name == set && coordinate.name == name

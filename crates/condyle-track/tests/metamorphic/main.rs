@@ -1,18 +1,43 @@
 //! Relations between answers that hold whatever the right answer is, on random bodies and recordings: another
-//! order, other names, a turned, mirrored or larger world, time that runs backwards.
+//! order, other names, a turned, mirrored or larger world, time that runs backwards. And the minimum near the
+//! true posture, which is known here, is not missed.
 
 mod body;
 mod trial;
 
 use body::{Body, Dice};
 use condyle_math::{Quat, Vec3};
+use condyle_track::{FrameAnswer, Rules, Scratch, Tracker};
 use std::sync::OnceLock;
 use trial::{Against, FRAMES, Off, Rows, Tracked, compare, recorded};
 
-/// How many bodies each relation is tried on.
-fn seeds() -> std::ops::Range<u64> {
-    let n = std::env::var("BODIES").ok().and_then(|n| n.parse().ok()).unwrap_or(24);
-    0..n
+/// On how many bodies each relation is tried.
+const BODIES: u64 = 24;
+
+/// The same sums in another order: rounding, magnified by the solver's last step.
+const ROUNDING: Bounds = Bounds { fit: 1e-8, turn: 1e-6, number: 1e-6, differing: 0.0 };
+/// The same minimum, reached from elsewhere: each descent ends with the step that promises less than a millionth
+/// of F. Whole turns, and which three angles name an orientation, depend on the way.
+const ELSEWHERE: Bounds = Bounds { fit: 1e-6, turn: 1e-5, number: f64::INFINITY, differing: 0.0 };
+/// Followed from another side, of two minima the one stays that was followed while the other is not lower by a
+/// thousandth ([`TIE`]): the two ends of a range, or two ways to turn a joint of which the middle angle makes
+/// the first and the third axis nearly parallel. At most one frame in a thousand is such a one. (Body 7 is at
+/// both at once in one frame, 86° at a bound of 86°, with 0.4 % between them.)
+const ANOTHER_SIDE: Bounds =
+    Bounds { fit: 5e-3, turn: 0.01, number: f64::INFINITY, differing: 1e-3 };
+/// Fits that differ by less than this share are as good.
+const TIE: f64 = 1e-3;
+
+/// How far answers may be apart.
+#[derive(Clone, Copy)]
+struct Bounds {
+    /// Share of F + P.
+    fit: f64,
+    /// Radians.
+    turn: f64,
+    number: f64,
+    /// Which share of the frames may differ by more than a millionth of F + P.
+    differing: f64,
 }
 
 struct Trial {
@@ -31,7 +56,7 @@ fn trials() -> &'static [Trial] {
             let plain = Tracked::plain(body, &rows);
             Trial { truth, rows, plain }
         };
-        seeds().map(trial).collect()
+        (0..BODIES).map(trial).collect()
     })
 }
 
@@ -40,38 +65,49 @@ fn same(_: usize, turn: Quat) -> Quat {
 }
 
 fn against(seed: usize) -> Against<'static> {
-    Against { frame: &|frame| Some(frame), image: &same, growth: 1.0, case: format!("body {seed}") }
+    let case = format!("body {seed}");
+    Against { frame: &|frame| Some(frame), image: &same, growth: 1.0, case }
 }
 
-fn all(rows: &Rows, mut change: impl FnMut(&mut Vec<Option<[f64; 3]>>)) -> Rows {
+fn changed(rows: &Rows, change: impl FnMut(&mut Vec<Option<[f64; 3]>>)) -> Rows {
     let mut rows = rows.clone();
-    rows.iter_mut().for_each(&mut change);
+    rows.iter_mut().for_each(change);
     rows
 }
 
 fn mapped(rows: &Rows, change: impl Fn(Vec3) -> Vec3) -> Rows {
-    all(rows, |row| {
+    changed(rows, |row| {
         for place in row.iter_mut().flatten() {
             *place = change(Vec3::from(*place)).to_array();
         }
     })
 }
 
-/// Tries a relation on all bodies and prints how far it is off.
-fn relation(name: &str, mut try_one: impl FnMut(usize, &Trial) -> Off) -> Off {
+/// Tries a relation on all bodies, prints how far it is off, and holds it to its bounds.
+fn relation(name: &str, bounds: Bounds, mut try_one: impl FnMut(usize, &Trial) -> Off) {
     let mut off = Off::default();
     for (seed, trial) in trials().iter().enumerate() {
-        let one = try_one(seed, trial);
-        if std::env::var("EACH").is_ok() && (one.fit > 1e-6 || one.turn > 1e-4 || one.statuses > 0) {
-            println!("   {name}: {one:?}");
-        }
-        off.add(one);
+        off.add(try_one(seed, trial));
     }
+    let [fit, turn, number] = &off.at;
     println!(
-        "{name}: fit {:.1e} ({}), turn {:.1e} rad ({}), number {:.1e} ({}), {} statuses, {} joints, {} undetermined",
-        off.fit, off.at[0], off.turn, off.at[1], off.number, off.at[2], off.statuses, off.compared, off.undetermined
+        "{name}: {} frames, fit {:.1e} ({fit}), {} differ; {} joints and {} undetermined, turn {:.1e} rad ({turn}), \
+         angle {:.1e} rad ({number}); {} statuses",
+        off.frames,
+        off.fit,
+        off.differing,
+        off.compared,
+        off.undetermined,
+        off.turn,
+        off.number,
+        off.statuses
     );
-    off
+    assert_eq!(off.statuses, 0, "{name}: {off:?}");
+    assert!(off.fit <= bounds.fit && off.turn <= bounds.turn, "{name}: {off:?}");
+    assert!(off.number <= bounds.number, "{name}: {off:?}");
+    assert!(off.differing as f64 <= bounds.differing * off.frames as f64, "{name}: {off:?}");
+    // One cannot tell much from what nothing determines.
+    assert!(off.compared > 10 * off.undetermined, "{name}: {off:?}");
 }
 
 fn bits(a: &Tracked<'_>, b: &Tracked<'_>, case: usize) {
@@ -81,44 +117,48 @@ fn bits(a: &Tracked<'_>, b: &Tracked<'_>, case: usize) {
     }
 }
 
+fn all(body: &Body) -> Vec<usize> {
+    (0..body.points_len()).collect()
+}
+
 #[test]
 fn recorded_markers_in_another_order() {
-    relation("recorded order", |seed, trial| {
-        let order = Dice(seed as u64).shuffled(trial.plain.body.points_len());
-        let rows = all(&trial.rows, |row| *row = order.iter().map(|&i| row[i]).collect());
-        let tracker = trial.plain.body.tracker(&order, &[]);
-        compare(&trial.plain, &Tracked::of(trial.plain.body, tracker, &rows, None), &against(seed))
+    relation("recorded order", ROUNDING, |seed, trial| {
+        let body = trial.plain.body;
+        let order = Dice(seed as u64).shuffled(body.points_len());
+        let rows = changed(&trial.rows, |row| *row = order.iter().map(|&i| row[i]).collect());
+        let tracker = body.tracker(&order, &[]);
+        compare(&trial.plain, &Tracked::of(body, tracker, &rows, None), &against(seed))
     });
 }
 
 #[test]
-fn other_names_markers_nobody_records_and_weight_nought() {
-    relation("names", |seed, trial| {
+fn names_order_in_the_model_and_markers_that_do_not_count_change_no_bit() {
+    for (seed, trial) in trials().iter().enumerate() {
         let dice = &mut Dice(seed as u64);
         let plain = &trial.plain;
         let mut body = plain.body.clone();
         body.prefix = "another_";
         body.marker_order = dice.shuffled(body.points_len());
         body.unused = vec![dice.vector(0.5), dice.vector(0.5)];
-        let other = Tracked::plain(&body, &trial.rows);
-        bits(plain, &other, seed);
-        // Markers of weight 0 are seen where they cannot be.
-        let n = body.points_len();
-        let all_points: Vec<usize> = (0..n).collect();
-        let mut targets = body.tracker(&all_points, &[]).targets().clone();
-        targets.markers.push(targets.markers[0].clone());
-        targets.markers[n].weight = 0.0;
-        let rows = all(&trial.rows, |row| row.push(Some([9.0, -4.0, 1.0])));
-        let tracker = condyle_track::Tracker::new(body.build(), targets, Default::default());
-        let weightless = Tracked::of(&body, tracker, &rows, None);
-        bits(plain, &weightless, seed);
-        compare(plain, &weightless, &against(seed))
-    });
+        bits(plain, &Tracked::plain(&body, &trial.rows), seed);
+        // A marker of weight 0 is seen where it cannot be.
+        let mut targets = body.tracker(&all(&body), &[]).targets().clone();
+        let mut weightless = targets.markers[0].clone();
+        weightless.weight = 0.0;
+        targets.markers.push(weightless);
+        let rows = changed(&trial.rows, |row| row.push(Some([9.0, -4.0, 1.0])));
+        let tracker = Tracker::new(body.build(), targets, Rules::default());
+        bits(plain, &Tracked::of(&body, tracker, &rows, None), seed);
+        // Powers of two change no digit of a weight.
+        let heavier = body.reweighed(4.0);
+        bits(plain, &Tracked::plain(&heavier, &trial.rows), seed);
+    }
 }
 
 #[test]
 fn segments_in_another_order() {
-    relation("segments", |seed, trial| {
+    relation("segments", ROUNDING, |seed, trial| {
         let mut body = trial.plain.body.clone();
         body.order = Dice(seed as u64).shuffled(body.parts_len());
         compare(&trial.plain, &Tracked::plain(&body, &trial.rows), &against(seed))
@@ -126,20 +166,35 @@ fn segments_in_another_order() {
 }
 
 #[test]
-fn a_turned_and_moved_world() {
-    relation("turned world", |seed, trial| {
-        let dice = &mut Dice(seed as u64);
-        let (turn, moved) = (Quat::exp(dice.vector(2.5)), dice.vector(2.0));
-        let rows = mapped(&trial.rows, |p| turn.to_mat3() * p + moved);
-        let image = |part: usize, own: Quat| if part == 0 { turn * own } else { own };
-        let other = Tracked::plain(trial.plain.body, &rows);
-        compare(&trial.plain, &other, &Against { image: &image, ..against(seed) })
+fn weights_times_a_constant() {
+    for factor in [3.0, 1e6] {
+        relation(&format!("weights times {factor}"), ROUNDING, |seed, trial| {
+            let body = trial.plain.body.reweighed(factor);
+            compare(&trial.plain, &Tracked::plain(&body, &trial.rows), &against(seed))
+        });
+    }
+}
+
+#[test]
+fn markers_twice_at_half_weight() {
+    relation("twice at half weight", ROUNDING, |seed, trial| {
+        let body = trial.plain.body;
+        let n = body.points_len();
+        let twice: Vec<usize> = Dice(seed as u64).shuffled(n).into_iter().take(n / 2).collect();
+        let rows = changed(&trial.rows, |row| row.extend_from_within(..));
+        let rows = changed(&rows, |row| {
+            let again: Vec<_> = twice.iter().map(|&i| row[n + i]).collect();
+            row.truncate(n);
+            row.extend(again);
+        });
+        let tracker = body.tracker(&all(body), &twice);
+        compare(&trial.plain, &Tracked::of(body, tracker, &rows, None), &against(seed))
     });
 }
 
 #[test]
 fn a_mirrored_world() {
-    relation("mirrored", |seed, trial| {
+    relation("mirrored", ELSEWHERE, |seed, trial| {
         let body = trial.plain.body.mirrored();
         let rows = mapped(&trial.rows, |p| Vec3::new(p.x, p.y, -p.z));
         let image = |_: usize, q: Quat| Quat { x: -q.x, y: -q.y, ..q };
@@ -150,7 +205,7 @@ fn a_mirrored_world() {
 
 #[test]
 fn a_larger_world() {
-    relation("twice the size", |seed, trial| {
+    relation("twice the size", ELSEWHERE, |seed, trial| {
         let body = trial.plain.body.resized(2.0);
         let rows = mapped(&trial.rows, |p| p * 2.0);
         let other = Tracked::plain(&body, &rows);
@@ -159,8 +214,20 @@ fn a_larger_world() {
 }
 
 #[test]
+fn a_turned_and_moved_world() {
+    relation("turned world", ELSEWHERE, |seed, trial| {
+        let dice = &mut Dice(seed as u64);
+        let (turn, moved) = (Quat::exp(dice.vector(2.5)), dice.vector(2.0));
+        let rows = mapped(&trial.rows, |p| turn.to_mat3() * p + moved);
+        let image = |part: usize, own: Quat| if part == 0 { turn * own } else { own };
+        let other = Tracked::plain(trial.plain.body, &rows);
+        compare(&trial.plain, &other, &Against { image: &image, ..against(seed) })
+    });
+}
+
+#[test]
 fn time_backwards() {
-    relation("backwards", |seed, trial| {
+    relation("backwards", ANOTHER_SIDE, |seed, trial| {
         let mut rows = trial.rows.clone();
         rows.reverse();
         let other = Tracked::plain(trial.plain.body, &rows);
@@ -171,14 +238,15 @@ fn time_backwards() {
 
 #[test]
 fn cuts() {
-    relation("cuts", |seed, trial| {
+    relation("cuts", ANOTHER_SIDE, |seed, trial| {
         let mut off = Off::default();
-        for cut in [1, 13, 37, 64, 65, 100, 127, 140, 149] {
+        for cut in [1, 13, 37, 64, 65, 100, 127, 140, FRAMES - 1] {
             let rows = trial.rows[cut..].to_vec();
             let other = Tracked::plain(trial.plain.body, &rows);
             let frame = |frame: usize| frame.checked_sub(cut);
             let case = format!("body {seed} cut at {cut}");
-            off.add(compare(&trial.plain, &other, &Against { frame: &frame, case, ..against(seed) }));
+            let how = Against { frame: &frame, case, ..against(seed) };
+            off.add(compare(&trial.plain, &other, &how));
         }
         off
     });
@@ -187,36 +255,10 @@ fn cuts() {
 #[test]
 fn other_chunks() {
     for length in [16, FRAMES] {
-        relation(&format!("chunks of {length}"), |seed, trial| {
-            let all: Vec<usize> = (0..trial.plain.body.points_len()).collect();
-            let tracker = trial.plain.body.tracker(&all, &[]);
-            let other = Tracked::of(trial.plain.body, tracker, &trial.rows, Some(length));
-            compare(&trial.plain, &other, &against(seed))
-        });
-    }
-}
-
-#[test]
-fn markers_twice_at_half_weight() {
-    relation("twice at half weight", |seed, trial| {
-        let n = trial.plain.body.points_len();
-        let twice: Vec<usize> = Dice(seed as u64).shuffled(n).into_iter().take(n / 2).collect();
-        let all_points: Vec<usize> = (0..n).collect();
-        let rows = all(&trial.rows, |row| row.extend(twice.iter().map(|&i| row[i]).collect::<Vec<_>>()));
-        let tracker = trial.plain.body.tracker(&all_points, &twice);
-        compare(&trial.plain, &Tracked::of(trial.plain.body, tracker, &rows, None), &against(seed))
-    });
-}
-
-#[test]
-fn weights_times_a_constant() {
-    for factor in [4.0, 3.0, 1e6] {
-        relation(&format!("weights times {factor}"), |seed, trial| {
-            let body = trial.plain.body.reweighed(factor);
-            let other = Tracked::plain(&body, &trial.rows);
-            if factor == 4.0 {
-                bits(&trial.plain, &other, seed);
-            }
+        relation(&format!("chunks of {length}"), ELSEWHERE, |seed, trial| {
+            let body = trial.plain.body;
+            let tracker = body.tracker(&all(body), &[]);
+            let other = Tracked::of(body, tracker, &trial.rows, Some(length));
             compare(&trial.plain, &other, &against(seed))
         });
     }
@@ -224,100 +266,39 @@ fn weights_times_a_constant() {
 
 #[test]
 fn loops_that_hold_anyway() {
-    relation("redundant loops", |seed, trial| {
+    relation("redundant loops", ELSEWHERE, |seed, trial| {
         let mut body = trial.plain.body.clone();
         body.redundant = true;
         compare(&trial.plain, &Tracked::plain(&body, &trial.rows), &against(seed))
     });
 }
 
-/// Which of these frames fit worse than from the true posture, by how much.
-fn missed(tracked: &Tracked<'_>, truth: &[Vec<f64>], rows: &Rows) -> Vec<(usize, f64)> {
-    let mut scratch = condyle_track::Scratch::new(&tracked.tracker);
-    let mut missed = vec![];
-    for (frame, answer) in tracked.answers.iter().enumerate() {
-        let best = tracked.tracker.solve_frame(&mut scratch, &rows[frame], frame, &truth[frame]);
-        let ratio = (answer.minimised() + 1e-12) / (best.minimised() + 1e-12);
-        if best.status.is_solved() && answer.status.is_solved() && ratio > 1.001 {
-            missed.push((frame, ratio));
-        }
-    }
-    missed
+/// Whether an answer fits worse than what is found from the true posture, by more than a tie.
+fn missed(trial: &Trial, scratch: &mut Scratch, frame: usize, answer: &FrameAnswer) -> Option<f64> {
+    let tracker = &trial.plain.tracker;
+    let best = tracker.solve_frame(scratch, &trial.rows[frame], frame, &trial.truth[frame]);
+    let ratio = (answer.minimised() + 1e-12) / (best.minimised() + 1e-12);
+    let solved = best.status.is_solved() && answer.status.is_solved();
+    (solved && ratio > 1.0 + TIE).then_some(ratio)
 }
 
 #[test]
-fn the_true_posture() {
-    let (mut frames, mut total) = (0, 0);
+fn whole_trials_and_single_frames_find_the_minimum_near_the_true_posture() {
+    let mut failed = vec![];
     for (seed, trial) in trials().iter().enumerate() {
-        let missed = missed(&trial.plain, &trial.truth, &trial.rows);
-        total += trial.rows.len();
-        frames += missed.len();
-        if !missed.is_empty() {
-            println!("   truth: body {seed}: {} frames, first {:?}", missed.len(), &missed[..missed.len().min(4)]);
-        }
-    }
-    println!("truth: {frames} of {total} frames above 1.001 times");
-}
-
-#[test]
-fn each_frame_alone() {
-    let (mut frames, mut total) = (0, 0);
-    for (seed, trial) in trials().iter().enumerate() {
-        let mut scratch = condyle_track::Scratch::new(&trial.plain.tracker);
-        let mut missed = vec![];
-        for frame in (0..FRAMES).step_by(5) {
-            let alone = trial.plain.tracker.solve_first(&mut scratch, &trial.rows[frame], frame, 4);
-            let best = trial.plain.tracker.solve_frame(&mut scratch, &trial.rows[frame], frame, &trial.truth[frame]);
-            let ratio = (alone.minimised() + 1e-12) / (best.minimised() + 1e-12);
-            total += 1;
-            if best.status.is_solved() && alone.status.is_solved() && ratio > 1.001 {
-                missed.push((frame, ratio));
-                if std::env::var("EACH").is_ok() && missed.len() < 3 {
-                    let plain = &trial.plain;
-                    println!("body {seed} frame {frame} ratio {ratio} F {:.2e} {:?} {:?}", best.minimised(), alone.status, best.status);
-                    let fake = |answer: &condyle_track::FrameAnswer| Tracked { body: plain.body, tracker: plain.tracker.clone(), answers: vec![answer.clone()], trust: vec![] };
-                    let (a, b) = (fake(&alone), fake(&best));
-                    for part in 0..plain.body.parts_len() {
-                        let off = a.turns(0)[part].angle_to(b.turns(0)[part]);
-                        println!("    part {part} off {off:.3} alone {:.3?} best {:.3?} {}", a.numbers(0, part), b.numbers(0, part), plain.body.describe(part));
-                    }
+        let tracker = &trial.plain.tracker;
+        let mut scratch = Scratch::new(tracker);
+        for (frame, answer) in trial.plain.answers.iter().enumerate() {
+            if let Some(ratio) = missed(trial, &mut scratch, frame, answer) {
+                failed.push(format!("body {seed} frame {frame}: {ratio}"));
+            }
+            if frame % 5 == 0 {
+                let alone = tracker.solve_first(&mut scratch, &trial.rows[frame], frame, 4);
+                if let Some(ratio) = missed(trial, &mut scratch, frame, &alone) {
+                    failed.push(format!("body {seed} frame {frame} alone: {ratio}"));
                 }
             }
         }
-        frames += missed.len();
-        if !missed.is_empty() {
-            println!("   alone: body {seed}: {} frames, first {:?}", missed.len(), &missed[..missed.len().min(4)]);
-        }
     }
-    println!("alone: {frames} of {total} frames above 1.001 times");
-}
-
-#[test]
-fn probe() {
-    let Ok(what) = std::env::var("PROBE") else { return };
-    let words: Vec<usize> = what.split(' ').map(|w| w.parse().unwrap()).collect();
-    let (seed, from, to, length, cut) = (words[0], words[1], words[2], words[3], words[4]);
-    let body = Body::random(seed as u64);
-    let (truth, rows) = recorded(&body, seed as u64);
-    for part in 0..body.parts_len() {
-        println!("{part}: {}", body.describe(part));
-    }
-    let all: Vec<usize> = (0..body.points_len()).collect();
-    let plain = Tracked::plain(&body, &rows);
-    let part_rows = rows[cut..].to_vec();
-    let other = Tracked::of(&body, body.tracker(&all, &[]), &part_rows, Some(length));
-    let mut scratch = condyle_track::Scratch::new(&plain.tracker);
-    for frame in from..to {
-        let best = plain.tracker.solve_frame(&mut scratch, &rows[frame], frame, &truth[frame]);
-        let alone = plain.tracker.solve_first(&mut scratch, &rows[frame], frame, 4);
-        let seen = rows[frame].iter().flatten().count();
-        println!("frame {frame} seen {seen} truth {:.3e} plain {:.3e} other {:.3e} alone {:.3e}", best.minimised(), plain.answers[frame].minimised(), other.answers[frame - cut].minimised(), alone.minimised());
-        let fake = Tracked { body: &body, tracker: plain.tracker.clone(), answers: vec![best], trust: vec![] };
-        for part in 0..body.parts_len() {
-            let (a, b, t) = (plain.turns(frame)[part], other.turns(frame - cut)[part], fake.turns(0)[part]);
-            if a.angle_to(b) > 0.0001 || a.angle_to(t) > 0.0001 {
-                println!("    part {part} plain {:.5?} other {:.5?} truth {:.5?} {}", plain.numbers(frame, part), other.numbers(frame - cut, part), fake.numbers(0, part), plain.determines(frame, part));
-            }
-        }
-    }
+    assert!(failed.is_empty(), "{failed:?}");
 }

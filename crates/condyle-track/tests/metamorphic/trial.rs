@@ -111,7 +111,8 @@ impl<'a> Tracked<'a> {
         let (model, program) = (self.tracker.model(), self.tracker.program());
         let mut pose = Pose::new(program);
         program.evaluate(&self.answers[frame].coordinates, Mode::Open, &mut pose).unwrap();
-        let of = |part: usize| Quat::from_mat3(pose.segment(self.body.joint_of(model, part).0).linear);
+        let of =
+            |part: usize| Quat::from_mat3(pose.segment(self.body.joint_of(model, part).0).linear);
         let turn = |part: usize| match self.body.parent(part) {
             Some(parent) => of(parent).conjugate() * of(part),
             None => of(part),
@@ -142,12 +143,15 @@ pub(crate) struct Off {
     pub(crate) fit: f64,
     /// Of how a determined part is turned in its parent, in radians.
     pub(crate) turn: f64,
-    /// Of a number of a determined joint without a quaternion.
+    /// Of an angle of a determined joint without a quaternion, in radians.
     pub(crate) number: f64,
     /// Where these are.
     pub(crate) at: [String; 3],
     /// Frames of which one is solved and the other not.
     pub(crate) statuses: usize,
+    /// Frames, and those whose F + P differs by more than a millionth.
+    pub(crate) frames: usize,
+    pub(crate) differing: usize,
     /// Joints of frames that were compared, and those that are not determined.
     pub(crate) compared: usize,
     pub(crate) undetermined: usize,
@@ -166,6 +170,8 @@ impl Off {
             (self.number, self.at[2]) = (other.number, number);
         }
         self.statuses += other.statuses;
+        self.frames += other.frames;
+        self.differing += other.differing;
         self.compared += other.compared;
         self.undetermined += other.undetermined;
     }
@@ -198,7 +204,9 @@ pub(crate) fn compare(a: &Tracked<'_>, b: &Tracked<'_>, how: &Against<'_>) -> Of
         let (f, g) = (x.minimised() * how.growth, y.minimised());
         let fit = (f - g).abs() / (f + 1e-12 * how.growth);
         let [turns, others] = [a.turns(frame), b.turns(other)];
-        let mut frame_off = Off { fit, at: [place(0), String::new(), String::new()], ..Off::default() };
+        let at = [place(0), String::new(), String::new()];
+        let differing = usize::from(fit > 1e-6);
+        let mut frame_off = Off { fit, at, frames: 1, differing, ..Off::default() };
         for part in 0..a.body.parts_len() {
             if !(a.determines(frame, part) && b.determines(other, part)) {
                 frame_off.undetermined += 1;
