@@ -55,6 +55,20 @@ fn anywhere(tracker: &Tracker, near: &[f64], dice: &mut Dice) -> Vec<f64> {
     stored
 }
 
+/// Whether no rotation is more than half a turn beyond its range as the file states it, enforced or not: where a
+/// knee is wound off the ends of its splines, there is no knee.
+fn described(model: &Model, stored: &[f64]) -> bool {
+    let beyond = |id: CoordinateId| {
+        let (range, value) = (model.coordinate(id).range, model.value(stored, id));
+        let half = std::f64::consts::PI;
+        range.lower.is_some_and(|lower| value < lower - half)
+            || range.upper.is_some_and(|upper| value > upper + half)
+    };
+    let mut rotations =
+        model.coordinate_ids().filter(|&id| model.coordinate(id).kind == CoordinateKind::Rotation);
+    !rotations.any(beyond)
+}
+
 fn within(model: &Model, stored: &[f64]) -> bool {
     let legal = |id| model.coordinate(id).range.distance(model.value(stored, id)) >= -1e-9;
     model.coordinate_ids().all(legal)
@@ -182,7 +196,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let near = if i % 2 == 0 { &first.coordinates } else { &answer.coordinates };
             let start = anywhere(tracker, near, &mut dice);
             let again = tracker.solve_frame(&mut scratch, &seen, frame, &start);
-            if again.status.is_solved() {
+            if again.status.is_solved() && described(&model, &again.coordinates) {
                 offer(again.minimised(), "at random", &again.coordinates);
             }
         }
