@@ -19,7 +19,7 @@ const FITS: f64 = 1.5;
 const FITS_FLOOR: f64 = 1e-5;
 /// Beyond so many times (squared) the distance of all markers a limb is odd.
 const ODD: f64 = 4.0;
-/// Closer than 10 mm RMS hardly a limb is in a wrong minimum without being odd.
+/// Closer than 10 mm RMS a limb in a wrong minimum stands out, and is tried on its own.
 const CLOSE: f64 = 1e-4;
 /// Two orientations whose markers are as far off, but for this share, are the same.
 const SAME: f64 = 1e-9;
@@ -265,8 +265,7 @@ impl Tracker {
             let markers = self.markers.placed.iter().zip(seen);
             markers.map(|(m, seen)| seen.filter(|_| !groups_of(hidden, m.group))).collect()
         };
-        let odd = self.odd_limb(scratch, seen, &start.coordinates);
-        if self.limbs.is_empty() || (odd.is_none() && start.minimised() < CLOSE) {
+        if self.limbs.is_empty() || start.minimised() < CLOSE {
             return None;
         }
         let mut now = shown(&self.limbs);
