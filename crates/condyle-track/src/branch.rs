@@ -13,6 +13,9 @@ use std::f64::consts::{PI, TAU};
 /// A range that spans this much, 359°, has no ends where whole turns are the same posture.
 const CIRCLE: f64 = 359.0 * PI / 180.0;
 
+/// The ends of a range that spans this much, 270°, are near each other where whole turns are the same posture.
+const WIDE: f64 = 1.5 * PI;
+
 /// At how many postures is tried.
 const TRIES: usize = 6;
 
@@ -33,6 +36,8 @@ struct Twin {
 pub(crate) struct Branches {
     /// Where the rotations are stored of which whole turns are the same posture.
     circles: Vec<usize>,
+    /// Where those are stored of which the two ends are near each other.
+    wide: Vec<usize>,
     twins: Vec<Twin>,
 }
 
@@ -61,8 +66,13 @@ impl Branches {
                 continue;
             }
             triple.push((place, model.coordinate(id).joint_set, told_apart.contains(&id)));
-            let wide = *upper - *lower >= CIRCLE;
-            if wide && same.holds((*lower, *upper), |q| vec![(place, q[place] + TAU)]) {
+            let span = *upper - *lower;
+            if span < WIDE || !same.holds((*lower, *upper), |q| vec![(place, q[place] + TAU)]) {
+                continue;
+            }
+            if span < CIRCLE {
+                branches.wide.push(place);
+            } else {
                 (*lower, *upper) = (f64::NEG_INFINITY, f64::INFINITY);
                 if !told_apart.contains(&id) {
                     branches.circles.push(place);
@@ -115,28 +125,33 @@ impl Branches {
         changed
     }
 
-    /// The numbers of a posture with one joint at its other three angles, for each joint of which an
-    /// angle is at a bound and the others are legal.
+    /// Where else a joint could be that is at a bound: at its other three angles, or at the other end of an
+    /// angle whose two ends are near each other.
     pub(crate) fn across_bounds<'a>(
         &'a self,
         stored: &'a [f64],
         bounds: &'a [Option<Bounded>],
     ) -> impl Iterator<Item = [(usize, f64); 3]> + 'a {
-        let at_bound = move |place: &usize| {
-            let bound = bounds.iter().flatten().find(|(p, ..)| p == place);
-            bound.is_some_and(|&(p, lower, upper)| stored[p] <= lower || stored[p] >= upper)
+        let bound = move |place: usize| bounds.iter().flatten().find(move |(p, ..)| *p == place);
+        let at_bound = move |&place: &usize| {
+            bound(place).is_some_and(|&(p, lower, upper)| stored[p] <= lower || stored[p] >= upper)
         };
         let twins = self.twins.iter().filter(move |twin| twin.places.iter().any(at_bound));
-        twins.filter_map(move |twin| {
+        let others = twins.filter_map(move |twin| {
             // By whole turns into the bounds.
             let fitted = twin.of(stored).map(|(place, q)| {
-                let bound = bounds.iter().flatten().find(|(p, ..)| *p == place);
                 let turns = [0.0, -TAU, TAU].map(|turn| q + turn);
-                let inside = |q: &f64| bound.is_none_or(|&(_, l, u)| (l..=u).contains(q));
+                let inside = |q: &f64| bound(place).is_none_or(|&(_, l, u)| (l..=u).contains(q));
                 (place, turns.into_iter().find(inside).unwrap_or(q))
             });
             legal(&fitted, bounds).then_some(fitted)
-        })
+        });
+        let wide = self.wide.iter().copied().filter(at_bound);
+        let ends = wide.filter_map(move |place| {
+            let &(_, lower, upper) = bound(place)?;
+            Some([(place, if stored[place] <= lower { upper } else { lower }); 3])
+        });
+        others.chain(ends)
     }
 
     fn turned_near(&self, values: [(usize, f64); 3], to: &[f64]) -> [(usize, f64); 3] {

@@ -81,9 +81,19 @@ impl Tracker {
         }
         let mut best =
             best.unwrap_or_else(|| self.solve_frame(scratch, seen, frame, &self.defaults));
+        if let Some(start) = self.outward(scratch, seen, frame, &best) {
+            let mut answer = self.solve_frame(scratch, seen, frame, &start.coordinates);
+            if self.unwind(&mut answer.coordinates) {
+                self.solve_into(scratch, seen, frame, &mut answer);
+            }
+            if self.preferred(&answer, &best) {
+                best = answer;
+            }
+        }
         for guess in 0..self.limbs.len() {
             self.try_limb(scratch, seen, frame, guess, &mut best);
         }
+        self.cross_bounds(scratch, seen, frame, &mut best);
         best
     }
 
@@ -124,11 +134,12 @@ impl Tracker {
         if !alike || a.status != b.status {
             return better(a, b);
         }
-        let away = |answer: &FrameAnswer| -> f64 {
-            let turns = self.turns(&answer.coordinates, &self.defaults);
-            turns.map(|(_, turn)| turn.powi(2)).sum()
-        };
-        away(a) < away(b) - 1e-6
+        self.away(&a.coordinates) < self.away(&b.coordinates) - 1e-6
+    }
+
+    /// The sum of the squared rotations away from the defaults.
+    pub(crate) fn away(&self, stored: &[f64]) -> f64 {
+        self.turns(stored, &self.defaults).map(|(_, turn)| turn.powi(2)).sum()
     }
 
     /// The largest change of a rotation between two answers, in radians.
@@ -188,7 +199,7 @@ impl Tracker {
         }
     }
 
-    /// Where a joint is at a bound, tries its other three angles, if the ranges allow them.
+    /// Where a joint is at a bound, tries where else it could be.
     fn cross_bounds(
         &self,
         scratch: &mut Scratch,
@@ -196,14 +207,17 @@ impl Tracker {
         frame: usize,
         answer: &mut FrameAnswer,
     ) {
-        let mut across = self.branches.across_bounds(&answer.coordinates, &self.stored);
-        let Some(other) = across.next() else { return };
-        drop(across);
-        let mut start = answer.coordinates.clone();
-        other.iter().for_each(|&(place, q)| start[place] = q);
-        let again = self.solve_frame(scratch, seen, frame, &start);
-        if again.minimised() < answer.minimised() * (1.0 - SWITCH) && better(&again, answer) {
-            *answer = again;
+        if self.branches.across_bounds(&answer.coordinates, &self.stored).next().is_none() {
+            return;
+        }
+        let stored = answer.coordinates.clone();
+        for other in self.branches.across_bounds(&stored, &self.stored) {
+            let mut start = answer.coordinates.clone();
+            other.iter().for_each(|&(place, q)| start[place] = q);
+            let again = self.solve_frame(scratch, seen, frame, &start);
+            if again.minimised() < answer.minimised() * (1.0 - SWITCH) && better(&again, answer) {
+                *answer = again;
+            }
         }
     }
 

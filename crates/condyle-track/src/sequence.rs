@@ -23,6 +23,9 @@ pub struct Chunk {
 /// Frames in a chunk.
 const LENGTH: usize = 64;
 
+/// A limb is tried again where it is so many times as odd as when that was in vain.
+const ODDER: f64 = 1.5;
+
 /// How many first guesses the first frame gets.
 pub(crate) const FIRST_GUESSES: usize = 4;
 
@@ -43,6 +46,8 @@ pub fn keys(
 ) -> Vec<FrameAnswer> {
     let mut seen = vec![];
     let mut keys: Vec<FrameAnswer> = vec![];
+    // For each limb how odd it was when no other turn was better.
+    let mut tried = vec![0.0; tracker.limbs.len()];
     for chunk in chunks {
         let frame = chunk.frames.start;
         recorded.positions(frame, &mut seen);
@@ -52,6 +57,12 @@ pub fn keys(
                 let mut answer = before.clone();
                 scratch.solver.forget();
                 tracker.follow(scratch, &seen, frame, &mut answer, false);
+                // It may have followed a wrong minimum for long without a jump.
+                let odd = tracker.odd_limb(scratch, &seen, &answer.coordinates);
+                if let Some((limb, ratio)) = odd.filter(|(limb, r)| *r > ODDER * tried[*limb]) {
+                    let found = tracker.try_odd_limb(scratch, &seen, frame, limb, &mut answer);
+                    tried[limb] = if found { 0.0 } else { ratio };
+                }
                 answer
             }
         };

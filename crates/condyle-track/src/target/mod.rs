@@ -36,7 +36,7 @@ mod tests;
 
 pub use coordinate::{CoordinateTarget, Wanted};
 pub use marker::MarkerTarget;
-pub(crate) use marker::Markers;
+pub(crate) use marker::{Markers, Placed};
 pub(crate) use moments::Moments;
 pub use orientation::OrientationTarget;
 pub use posture::PostureTarget;
