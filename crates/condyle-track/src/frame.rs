@@ -17,6 +17,8 @@ const ALIKE: f64 = 1e-9;
 /// only where that lowers F + P by this share.
 pub(crate) const TURN: f64 = 0.3;
 const SWITCH: f64 = 1e-3;
+/// The tolerance of descents that are only gone on from.
+const ROUGH: f64 = 1e-3;
 /// How many first guesses such a frame gets.
 const RESCUE_GUESSES: usize = 2;
 
@@ -54,7 +56,21 @@ impl Tracker {
         answer: &mut FrameAnswer,
     ) {
         scratch.solver.forget();
-        self.descend(scratch, seen, frame, answer);
+        self.descend(scratch, seen, frame, self.rules.tolerance, answer);
+    }
+
+    /// A frame from one start, near enough to judge it and to go on from.
+    pub(crate) fn solve_roughly(
+        &self,
+        scratch: &mut Scratch,
+        seen: &[Option<[f64; 3]>],
+        frame: usize,
+        start: &[f64],
+    ) -> FrameAnswer {
+        let mut answer = FrameAnswer::start(start);
+        scratch.solver.forget();
+        self.descend(scratch, seen, frame, self.rules.tolerance.max(ROUGH), &mut answer);
+        answer
     }
 
     /// The posture of a frame about which nothing is known, from at most so many first guesses.
@@ -63,6 +79,28 @@ impl Tracker {
     /// turns may even fit a little better there. Such an answer is wound back by whole turns towards
     /// the defaults and solved again from there, and that is what competes.
     pub fn solve_first(
+        &self,
+        scratch: &mut Scratch,
+        seen: &[Option<[f64; 3]>],
+        frame: usize,
+        guesses: usize,
+    ) -> FrameAnswer {
+        let mut best = self.solve_guesses(scratch, seen, frame, guesses);
+        if let Some(start) = self.outward(scratch, seen, frame, &best) {
+            let mut answer = self.solve_frame(scratch, seen, frame, &start.coordinates);
+            if self.unwind(&mut answer.coordinates) {
+                self.solve_into(scratch, seen, frame, &mut answer);
+            }
+            if self.preferred(&answer, &best) {
+                best = answer;
+            }
+        }
+        self.try_limbs(scratch, seen, frame, &mut best);
+        best
+    }
+
+    /// The best descent from at most so many first guesses of the whole model.
+    fn solve_guesses(
         &self,
         scratch: &mut Scratch,
         seen: &[Option<[f64; 3]>],
@@ -79,22 +117,21 @@ impl Tracker {
                 best = Some(answer);
             }
         }
-        let mut best =
-            best.unwrap_or_else(|| self.solve_frame(scratch, seen, frame, &self.defaults));
-        if let Some(start) = self.outward(scratch, seen, frame, &best) {
-            let mut answer = self.solve_frame(scratch, seen, frame, &start.coordinates);
-            if self.unwind(&mut answer.coordinates) {
-                self.solve_into(scratch, seen, frame, &mut answer);
-            }
-            if self.preferred(&answer, &best) {
-                best = answer;
-            }
+        best.unwrap_or_else(|| self.solve_frame(scratch, seen, frame, &self.defaults))
+    }
+
+    /// Tries each limb at other quarter turns, then what lies beyond bounds.
+    fn try_limbs(
+        &self,
+        scratch: &mut Scratch,
+        seen: &[Option<[f64; 3]>],
+        frame: usize,
+        best: &mut FrameAnswer,
+    ) {
+        for limb in 0..self.limbs.len() {
+            self.try_limb(scratch, seen, frame, limb, best);
         }
-        for guess in 0..self.limbs.len() {
-            self.try_limb(scratch, seen, frame, guess, &mut best);
-        }
-        self.cross_bounds(scratch, seen, frame, &mut best);
-        best
+        self.cross_bounds(scratch, seen, frame, best);
     }
 
     /// Tries a limb at other quarter turns, where its markers are farther off than all on average.
@@ -184,12 +221,13 @@ impl Tracker {
         gap: bool,
     ) {
         let before = if answer.status.is_solved() { answer.minimised() } else { f64::INFINITY };
-        self.descend(scratch, seen, frame, answer);
+        self.descend(scratch, seen, frame, self.rules.tolerance, answer);
         self.cross_bounds(scratch, seen, frame, answer);
         let jumped = answer.minimised() > JUMP * before + JUMP_FLOOR;
         let lost = matches!(answer.status, FrameStatus::Uncertain | FrameStatus::Infeasible);
         if jumped || lost || gap {
-            let mut again = self.solve_first(scratch, seen, frame, RESCUE_GUESSES);
+            let mut again = self.solve_guesses(scratch, seen, frame, RESCUE_GUESSES);
+            self.try_limbs(scratch, seen, frame, &mut again);
             self.branches.bring_near(&mut again.coordinates, &answer.coordinates, &self.stored);
             let all = answer.iterations + again.iterations;
             if self.replaces(&again, answer) {
@@ -227,6 +265,7 @@ impl Tracker {
         scratch: &mut Scratch,
         seen: &[Option<[f64; 3]>],
         index: usize,
+        tolerance: f64,
         answer: &mut FrameAnswer,
     ) {
         let Scratch { solver, buffers } = scratch;
@@ -238,7 +277,6 @@ impl Tracker {
         let some_seen = frame.buffers.total_weight > 0.0;
         (answer.status, answer.iterations) = (FrameStatus::NoMarkers, 0);
         if some_seen || self.targets.stand_without_markers() {
-            let tolerance = self.rules.tolerance;
             let stopping = least_squares::Stopping { tolerance, ..Default::default() };
             let summary = solver.minimise(&mut frame, &stopping);
             answer.iterations = summary.iterations;

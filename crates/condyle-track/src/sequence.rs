@@ -199,6 +199,8 @@ const HIGH: f64 = 1.5;
 /// At most one frame in so many, and so far apart.
 const REVIEWED: usize = 256;
 const APART: usize = 32;
+/// After so many frames in a row for which nothing better was found, the others are left.
+const IN_VAIN: usize = 2;
 
 /// Tries first guesses where the fit is worst. A posture that becomes worse little by little, at a bound or
 /// in a minimum of its own, is no jump that following would notice. What is better goes on to the
@@ -215,10 +217,10 @@ fn review(
     let Some(&median) = sorted.get(sorted.len() / 2) else { return };
     let mut order: Vec<usize> = (0..answers.len()).collect();
     order.sort_by(|&a, &b| value(&answers[b]).total_cmp(&value(&answers[a])));
-    let mut looked: Vec<usize> = vec![];
+    let (mut looked, mut in_vain): (Vec<usize>, usize) = (vec![], 0);
     let mut seen = vec![];
     for frame in order {
-        if looked.len() > answers.len() / REVIEWED {
+        if looked.len() > answers.len() / REVIEWED || in_vain >= IN_VAIN {
             break;
         }
         let high = value(&answers[frame]) > HIGH * median + 1e-6;
@@ -231,8 +233,10 @@ fn review(
         let numbers = &mut again.coordinates;
         tracker.branches.bring_near(numbers, &answers[frame].coordinates, &tracker.stored);
         if !tracker.replaces(&again, &answers[frame]) {
+            in_vain += 1;
             continue;
         }
+        in_vain = 0;
         answers[frame] = again;
         walk_back(tracker, scratch, recorded, 0, &mut answers[..=frame]);
         for next in frame + 1..answers.len() {
