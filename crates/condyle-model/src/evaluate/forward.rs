@@ -191,28 +191,25 @@ impl Program {
     /// computes the limit rows.
     fn run_cone<S: Scalar>(&self, cone: u32, mode: Mode, scalars: &mut [S]) {
         let call = &self.code.cones[cone as usize];
-        let mut asked = [S::zero(); 4];
+        let mut numbers = [S::zero(); 4];
         let n = call.inputs.len();
-        for (number, &input) in asked.iter_mut().zip(&call.inputs) {
+        for (number, &input) in numbers.iter_mut().zip(&call.inputs) {
             *number = scalars[input as usize];
         }
         // Which side of the boundary is nearest differs from lane to lane.
         if mode == Mode::Posed {
-            let values = S::lane_by_lane(asked, |asked| {
+            numbers = S::lane_by_lane(numbers, |asked| {
                 // Constants: the derivative of a moved number is taken as 0.
                 let legal = call.component.legal(&asked.map(Lane::value)[..n]);
                 legal.map_or(asked, |legal| legal.map(Scalar::from_f64))
             });
-            for (&output, value) in call.outputs.iter().zip(values) {
-                scalars[output as usize] = value;
-            }
             // The effective posture is legal: no violation remains.
             call.rows.iter().for_each(|&row| scalars[row as usize] = S::zero());
         } else {
-            let rows = S::lane_by_lane(asked, |asked| {
-                let numbers = &asked.map(Lane::value)[..n];
-                call.component.open_rows(numbers).map(|(value, slopes)| {
-                    let slopes = call.component.stored_slopes(numbers, slopes);
+            let rows = S::lane_by_lane(numbers, |asked| {
+                let values = &asked.map(Lane::value)[..n];
+                call.component.open_rows(values).map(|(value, slopes)| {
+                    let slopes = call.component.stored_slopes(values, slopes);
                     // A row is known by value and slopes: Σ x.chain(0, slope) adds the derivatives
                     // only.
                     let terms = asked[..n].iter().zip(slopes);
@@ -224,24 +221,24 @@ impl Program {
             for (&register, row) in call.rows.iter().zip(rows) {
                 scalars[register as usize] = row;
             }
-            for (&output, value) in call.outputs.iter().zip(asked) {
-                scalars[output as usize] = value;
-            }
+        }
+        for (&output, value) in call.outputs.iter().zip(numbers) {
+            scalars[output as usize] = value;
         }
     }
 
     /// Evaluates a contact: the transform of its two rotations, and its report.
     fn run_contact<S: Scalar>(&self, contact: u32, pose: &mut Pose<S>) {
         let call = &self.code.contacts[contact as usize];
-        let n = call.drivers.len();
+        let drivers = call.drivers.len();
         let mut inputs = [S::zero(); 14];
         inputs[..12].copy_from_slice(&pose.transforms[call.frame as usize].to_columns());
         for (value, &driver) in inputs[12..].iter_mut().zip(&call.drivers) {
             *value = pose.scalars[driver as usize];
         }
         // How many angles there are to choose from differs from lane to lane.
-        let [turns @ .., a, b, c, d] = S::lane_by_lane(inputs, |[frame @ .., e, f]| {
-            let glide = call.law.glide(Affine::from_columns(frame), &[e, f][..n]);
+        let [turns @ .., a, b, c, d] = S::lane_by_lane(inputs, |[frame @ .., first, second]| {
+            let glide = call.law.glide(Affine::from_columns(frame), &[first, second][..drivers]);
             let ([a, b], [c, d]) = (glide.angles, glide.gaps);
             let mut numbers = [Scalar::zero(); 16];
             numbers[..12].copy_from_slice(&Affine::from_rotation(glide.rotation).to_columns());
