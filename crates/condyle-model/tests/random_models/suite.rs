@@ -26,9 +26,15 @@ struct Tree {
     postures: Vec<Vec<f64>>,
     /// Which posture. It varies from tree to tree.
     tried: usize,
-    /// Open and posed: the transforms and the coordinates' numbers; `None` near a tangency of a
-    /// contact.
-    expected: [Option<(Vec<Affine>, Vec<Vec<f64>>)>; 2],
+    /// Open and posed; `None` near a tangency of a contact.
+    expected: [Option<Expected>; 2],
+}
+
+/// What the naive evaluator makes of a posture.
+struct Expected {
+    segments: Vec<Affine>,
+    /// The effective numbers of each coordinate.
+    coordinates: Vec<Vec<f64>>,
 }
 
 const MODES: [Mode; 2] = [Mode::Open, Mode::Posed];
@@ -49,7 +55,7 @@ fn tree(seed: u64) -> Tree {
         let twin = naive::Evaluator::new(&model, &postures[tried], mode);
         let segments = model.segment_ids().map(|id| twin.segment(id)).collect();
         let coordinates = model.coordinate_ids().map(|id| twin.coordinate(id)).collect();
-        (!twin.doubtful.get()).then_some((segments, coordinates))
+        (!twin.doubtful.get()).then_some(Expected { segments, coordinates })
     });
     Tree { model, postures, tried, expected }
 }
@@ -59,7 +65,7 @@ fn equals_the_naive_evaluator(backend: &impl Backend) {
     for (seed, tree) in trees().iter().enumerate() {
         for (mode, expected) in MODES.into_iter().zip(&tree.expected) {
             let found = &backend.poses(&tree.model, mode, &tree.postures)[tree.tried];
-            let Some((segments, coordinates)) = expected else {
+            let Some(Expected { segments, coordinates }) = expected else {
                 doubtful += 1;
                 continue;
             };
