@@ -46,6 +46,21 @@ impl<S> Affine<S> {
     pub const fn new(linear: Mat3<S>, translation: Vec3<S>) -> Self {
         Self { linear, translation }
     }
+
+    /// The twelve numbers: the columns of the linear part, then the translation.
+    #[inline(always)]
+    pub fn to_columns(self) -> [S; 12] {
+        let Mat3 { x, y, z } = self.linear;
+        let t = self.translation;
+        [x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z, t.x, t.y, t.z]
+    }
+
+    /// The transform with these columns; the inverse of [`Affine::to_columns`].
+    #[inline(always)]
+    pub fn from_columns([a, b, c, d, e, f, g, h, i, j, k, l]: [S; 12]) -> Self {
+        let (x, y, z) = (Vec3::new(a, b, c), Vec3::new(d, e, f), Vec3::new(g, h, i));
+        Self::new(Mat3::from_columns(x, y, z), Vec3::new(j, k, l))
+    }
 }
 
 impl<S: Scalar> Affine<S> {

@@ -1,6 +1,6 @@
 //! Dual numbers: values with their partial derivatives.
 
-use crate::Scalar;
+use crate::{Lane, Scalar};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A value with its partial derivatives with respect to `N` variables (forward mode).
@@ -125,15 +125,27 @@ impl<const N: usize> MulAssign for Dual<N> {
     }
 }
 
+impl<const N: usize> Lane for Dual<N> {
+    #[inline(always)]
+    fn value(self) -> f64 {
+        self.value
+    }
+}
+
 impl<const N: usize> Scalar for Dual<N> {
+    type Lane = Self;
+
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         Self::constant(value)
     }
 
     #[inline(always)]
-    fn value(self) -> f64 {
-        self.value
+    fn lane_by_lane<const I: usize, const O: usize>(
+        inputs: [Self; I],
+        kernel: impl Fn([Self; I]) -> [Self; O],
+    ) -> [Self; O] {
+        kernel(inputs)
     }
 
     #[inline(always)]

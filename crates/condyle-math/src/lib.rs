@@ -3,8 +3,8 @@
 //! Every hot path of condyle is written once, generic over the number type: [`f64`] gives values,
 //! [`Dual`] gives values with exact derivatives, and SIMD lanes (several characters at once) can be
 //! added as another implementation without changing a formula. For that reason [`Scalar`] has no
-//! comparison that returns a `bool`: selections use [`Scalar::select_less`], and table look-ups
-//! [`Scalar::chain`].
+//! comparison that returns a `bool`: selections use [`Scalar::select_less`], table look-ups
+//! [`Scalar::chain`], and what branches runs lane by lane ([`Scalar::lane_by_lane`]).
 //!
 //! # Conventions
 //!
@@ -42,7 +42,7 @@ pub use dual::Dual;
 pub use euler::{EulerOrder, UnknownOrder};
 pub use mat3::Mat3;
 pub use quat::Quat;
-pub use scalar::Scalar;
+pub use scalar::{Lane, Scalar};
 pub use swing_twist::SwingTwist;
 pub use twist::Twist;
 pub use vec3::Vec3;

@@ -5,9 +5,15 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A real number, several real numbers (SIMD lanes), or a number with its derivatives.
 ///
-/// Implemented for [`f64`] and [`Dual`](crate::Dual). Smooth kernels use only operations that work
-/// on all lanes at once, where a comparison has no single result. Kernels that branch read
-/// [`Scalar::value`] and have to be run lane by lane.
+/// Implemented for [`f64`] and [`Dual`](crate::Dual). A kernel works on all lanes at once, and they
+/// differ: no method returns a `bool` or a plain number. What depends on the value of a number is
+/// written in one of three ways:
+///
+/// - [`Scalar::select_less`] chooses between two results, both of which are computed;
+/// - [`Scalar::chain`] applies a function of one number that is known by its value and its slope,
+///   such as a spline;
+/// - [`Scalar::lane_by_lane`] runs a kernel that branches in each lane by itself. Only there
+///   [`Lane::value`] can be read.
 pub trait Scalar:
     Copy
     + Debug
@@ -23,11 +29,34 @@ pub trait Scalar:
     + Sync
     + 'static
 {
-    /// A constant.
+    /// The number in one lane; a scalar of one lane is its own.
+    type Lane: Lane;
+
+    /// A constant, the same in all lanes.
     fn from_f64(value: f64) -> Self;
 
-    /// The number without its derivatives, for kernels that branch.
-    fn value(self) -> f64;
+    /// A kernel that branches, run in each lane by itself: `kernel(inputs)` for a scalar of one
+    /// lane.
+    ///
+    /// ```
+    /// use condyle_math::{Lane, Scalar, Vec3};
+    ///
+    /// /// The coordinate axis that is farthest from the direction of `v`.
+    /// fn farthest<S: Scalar>(v: Vec3<S>) -> Vec3<S> {
+    ///     let axis = S::lane_by_lane(v.to_array(), |v| {
+    ///         let size = v.map(|part| part.value().abs());
+    ///         let least = size.into_iter().fold(f64::INFINITY, f64::min);
+    ///         let place = size.iter().position(|&part| part == least);
+    ///         Vec3::UNITS[place.unwrap_or(0)].cast().to_array()
+    ///     });
+    ///     axis.into()
+    /// }
+    /// assert_eq!(farthest(Vec3::new(0.5, -0.1, 0.2)), Vec3::Y);
+    /// ```
+    fn lane_by_lane<const N: usize, const M: usize>(
+        inputs: [Self; N],
+        kernel: impl Fn([Self::Lane; N]) -> [Self::Lane; M],
+    ) -> [Self; M];
 
     /// The square root; its derivative at 0 is infinite.
     fn sqrt(self) -> Self;
@@ -74,15 +103,33 @@ pub trait Scalar:
     }
 }
 
+/// A [`Scalar`] of one lane, on whose value a kernel can branch.
+pub trait Lane: Scalar<Lane = Self> {
+    /// The number without its derivatives.
+    fn value(self) -> f64;
+}
+
+impl Lane for f64 {
+    #[inline(always)]
+    fn value(self) -> f64 {
+        self
+    }
+}
+
 impl Scalar for f64 {
+    type Lane = Self;
+
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         value
     }
 
     #[inline(always)]
-    fn value(self) -> f64 {
-        self
+    fn lane_by_lane<const N: usize, const M: usize>(
+        inputs: [Self; N],
+        kernel: impl Fn([Self; N]) -> [Self; M],
+    ) -> [Self; M] {
+        kernel(inputs)
     }
 
     #[inline(always)]

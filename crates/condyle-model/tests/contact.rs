@@ -1,7 +1,7 @@
 //! Contact of the scapula with the ribs: the points are on the surface, at the angle nearest to
 //! rest, and the derivatives are right.
 
-use condyle_math::{Affine, Dual, Mat3, Scalar, Vec3};
+use condyle_math::{Affine, Dual, Lane, Mat3, Scalar, Vec3};
 use condyle_model::component::{ContactError, ContactPair, Glide, Gliding};
 use std::f64::consts::{PI, TAU};
 
@@ -198,7 +198,7 @@ fn what_glides_touches_at_the_root_nearest_to_rest_or_comes_as_near_as_it_can() 
 }
 
 /// Eight numbers that move a case: rotations about x, y, z, translations, the two drivers.
-fn moved<S: Scalar>(g: &Gliding, pose: Affine, drivers: [f64; 2], by: [S; 8]) -> Glide<S> {
+fn moved<S: Lane>(g: &Gliding, pose: Affine, drivers: [f64; 2], by: [S; 8]) -> Glide<S> {
     let turn = Mat3::rotation_x(by[0]) * Mat3::rotation_y(by[1]) * Mat3::rotation_z(by[2]);
     let step = Vec3::new(by[3], by[4], by[5]);
     let pose = Affine::new(turn * pose.linear.cast(), pose.translation.cast() + step);

@@ -189,6 +189,7 @@ impl Solver {
         // model.
         let mut fresh = true;
         let mut near = false;
+        let mut polished = false;
         while summary.iterations < options.iterations {
             summary.iterations += 1;
             if fresh {
@@ -242,8 +243,13 @@ impl Solver {
                     trust *= 0.5;
                 }
                 if last && violation <= options.feasibility {
-                    summary.stop = Stop::Converged;
-                    break;
+                    // F is off by as much as a multiplier times the violation: one more step where that
+                    // is not small.
+                    if polished || violation <= 0.01 * options.feasibility {
+                        summary.stop = Stop::Converged;
+                        break;
+                    }
+                    polished = true;
                 }
             } else if last {
                 summary.stop = Stop::Converged;

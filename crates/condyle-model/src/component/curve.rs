@@ -16,7 +16,7 @@
 
 use super::{Law, Signal};
 use condyle_math::function::SimmSpline;
-use condyle_math::{Affine, Mat3, Scalar, Vec3};
+use condyle_math::{Affine, Lane, Mat3, Scalar, Vec3};
 
 /// Motion of a segment along a curve.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,11 +64,11 @@ impl Curve {
 }
 
 /// `v` normalised, or `instead` if its length is below 1e-12.
-fn unit<S: Scalar>(v: Vec3<S>, instead: Vec3) -> Vec3<S> {
+fn unit<S: Scalar>(v: Vec3<S>, instead: Vec3<S>) -> Vec3<S> {
     let square = v.dot(v);
     let (least, one) = (S::from_f64(1e-24), S::one());
     let safe = square.select_less(least, one, square).sqrt();
-    let pick = |v: S, other: f64| square.select_less(least, S::from_f64(other), v / safe);
+    let pick = |v: S, other: S| square.select_less(least, other, v / safe);
     Vec3::new(pick(v.x, instead.x), pick(v.y, instead.y), pick(v.z, instead.z))
 }
 
@@ -96,11 +96,13 @@ impl Law for Curve {
         let forward = forward.normalized();
         let own_up = unit(up - forward * up.dot(forward), across(forward));
         let rest = Mat3::from_columns(forward, own_up, forward.cross(own_up));
-        let tangent = unit(Vec3::new(at(0, 1), at(1, 1), at(2, 1)), forward);
+        let tangent = unit(Vec3::new(at(0, 1), at(1, 1), at(2, 1)), forward.cast());
         let up: Vec3<S> = up.normalized().cast();
         // Only the value: the arbitrary direction has no derivatives.
-        let steep = Vec3::new(tangent.x.value(), tangent.y.value(), tangent.z.value());
-        let normal = unit(up - tangent * up.dot(tangent), across(steep));
+        let instead = S::lane_by_lane(tangent.to_array(), |tangent| {
+            across(tangent.map(Lane::value).into()).cast().to_array()
+        });
+        let normal = unit(up - tangent * up.dot(tangent), instead.into());
         let frame = Mat3::from_columns(tangent, normal, tangent.cross(normal));
         Affine::new(frame * rest.transpose().cast(), place)
     }

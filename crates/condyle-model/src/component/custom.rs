@@ -4,7 +4,7 @@
 //! its name and its parameters.
 
 use super::{Law, Signal};
-use condyle_math::{Affine, Dual, Mat3, Scalar, Vec3};
+use condyle_math::{Affine, Dual, Lane, Scalar};
 use std::any::TypeId;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -63,30 +63,37 @@ impl PartialEq for Custom {
     }
 }
 
-impl Law for Custom {
-    fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
+impl Custom {
+    /// The transform in one lane.
+    fn transform_lane<L: Lane>(&self, inputs: &[L]) -> Affine<L> {
         // Without derivatives the plain evaluation is enough.
-        if TypeId::of::<S>() == TypeId::of::<f64>() {
+        if TypeId::of::<L>() == TypeId::of::<f64>() {
             let mut plain = [0.0; MOST_LAW_INPUTS];
             plain.iter_mut().zip(inputs).for_each(|(p, x)| *p = x.value());
-            return self.motion.at(&plain[..inputs.len().min(MOST_LAW_INPUTS)]).cast();
+            return self.motion.at(&plain[..inputs.len()]).cast();
         }
         // The law is known on `LawDual` only: its partial derivatives are applied to the inputs by
         // the chain rule. Exact for dual numbers, which are of first order.
         let mut duals = [LawDual::constant(0.0); MOST_LAW_INPUTS];
-        let n = inputs.len().min(MOST_LAW_INPUTS);
-        for (i, input) in inputs[..n].iter().enumerate() {
-            duals[i] = LawDual::variable(input.value(), i);
+        for (i, (dual, input)) in duals.iter_mut().zip(inputs).enumerate() {
+            *dual = LawDual::variable(input.value(), i);
         }
-        let moved = self.motion.dual_at(&duals[..n]);
+        let moved = self.motion.dual_at(&duals[..inputs.len()]);
         let lift = |d: LawDual| {
-            let slopes = inputs[..n].iter().zip(d.partials);
-            slopes.fold(S::from_f64(d.value), |sum, (x, p)| sum + x.chain(|_| (0.0, p)))
+            let slopes = inputs.iter().zip(d.partials);
+            slopes.fold(L::from_f64(d.value), |sum, (x, p)| sum + x.chain(|_| (0.0, p)))
         };
-        let vector = |v: Vec3<LawDual>| Vec3::new(lift(v.x), lift(v.y), lift(v.z));
-        let m = moved.linear;
-        let linear = Mat3::from_columns(vector(m.x), vector(m.y), vector(m.z));
-        Affine::new(linear, vector(moved.translation))
+        Affine::from_columns(moved.to_columns().map(lift))
+    }
+}
+
+impl Law for Custom {
+    fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
+        let mut all = [S::zero(); MOST_LAW_INPUTS];
+        let n = inputs.len().min(MOST_LAW_INPUTS);
+        all[..n].copy_from_slice(&inputs[..n]);
+        let moved = S::lane_by_lane(all, |all| self.transform_lane(&all[..n]).to_columns());
+        Affine::from_columns(moved)
     }
 
     fn is_rigid(&self) -> bool {

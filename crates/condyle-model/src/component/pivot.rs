@@ -27,7 +27,7 @@
 
 use super::{Law, Signal};
 use condyle_math::function::SimmSpline;
-use condyle_math::{Affine, Mat3, Scalar, Vec3};
+use condyle_math::{Affine, Lane, Mat3, Scalar, Vec3};
 
 /// A hinge with a moving centre, like the knee.
 #[derive(Clone, Debug, PartialEq)]
@@ -259,17 +259,19 @@ impl Law for Pivot {
     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
         let angle = inputs[0];
         let rotation = Mat3::rotation_about(self.axis.cast(), angle.sin_cos());
-        let piece = self.piece_at(angle.value());
-        let (particular, lag) = (
-            |k: fn(Vec3) -> f64| {
+        // Which piece holds the angle differs from lane to lane.
+        let [px, py, pz, mx, my, mz] = S::lane_by_lane([angle], |[angle]| {
+            let piece = self.piece_at(angle.value());
+            let particular = |k: fn(Vec3) -> f64| {
                 angle.chain(|x| {
                     let (value, slope) = piece.particular_at(x);
                     (k(value), k(slope))
                 })
-            },
-            piece.lag.cast(),
-        );
-        let place = Vec3::new(particular(|v| v.x), particular(|v| v.y), particular(|v| v.z));
+            };
+            let lag: Vec3<S::Lane> = piece.lag.cast();
+            [particular(|v| v.x), particular(|v| v.y), particular(|v| v.z), lag.x, lag.y, lag.z]
+        });
+        let (place, lag) = (Vec3::new(px, py, pz), Vec3::new(mx, my, mz));
         Affine::new(rotation, place + rotation * lag)
     }
 }

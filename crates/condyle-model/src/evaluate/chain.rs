@@ -18,8 +18,9 @@ pub(super) trait Recorder<S> {
         inside: impl FnOnce() -> Twist<S>,
         outside: impl FnOnce() -> Twist<S>,
     );
-    /// A scale or shear by one scalar in `frame`; `rate` is the generator of its linear part there.
-    fn deformation(&mut self, frame: Affine<S>, rate: impl FnOnce() -> Mat3);
+    /// A scale or shear by the scalar `by` in `frame`; `rate` is the generator of its linear part
+    /// there.
+    fn deformation(&mut self, frame: Affine<S>, by: S, rate: impl FnOnce(f64) -> Mat3);
     /// A smooth law; `before` is the frame before it is multiplied.
     fn law(&mut self, code: &Code, law: u32, before: Affine<S>);
     /// A transform computed by an earlier instruction; `before` is the frame before it.
@@ -36,7 +37,7 @@ impl<S> Recorder<S> for Silent {
     fn motion(&mut self, _: Affine<S>, _: impl FnOnce() -> Twist<S>, _: impl FnOnce() -> Twist<S>) {
     }
     #[inline(always)]
-    fn deformation(&mut self, _: Affine<S>, _: impl FnOnce() -> Mat3) {}
+    fn deformation(&mut self, _: Affine<S>, _: S, _: impl FnOnce(f64) -> Mat3) {}
     #[inline(always)]
     fn law(&mut self, _: &Code, _: u32, _: Affine<S>) {}
     #[inline(always)]
@@ -143,13 +144,13 @@ fn rare_step<S: Scalar, R: Recorder<S>>(
         Step::Stretch { along, factor } => {
             // The rate M′·M⁻¹ is expressed in the frame before the scale, as is that of a shear.
             let (along, factor) = (code.scales[along as usize], scalars[factor.index()]);
-            recorder.deformation(frame, || along.rate(factor.value()));
+            recorder.deformation(frame, factor, |factor| along.rate(factor));
             frame.linear = r * along.matrix(factor);
         }
         Step::Shear { directions, amount } => {
             let [along, across] = code.shears[directions as usize];
             let amount = scalars[amount.index()];
-            recorder.deformation(frame, || shear::rate(along, across, amount.value()));
+            recorder.deformation(frame, amount, |amount| shear::rate(along, across, amount));
             frame.linear = r * shear::matrix(along, across, amount);
         }
         Step::Law(index) => {

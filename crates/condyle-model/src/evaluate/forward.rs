@@ -5,7 +5,7 @@ use super::instruction::Instruction;
 use super::pose::Pose;
 use super::program::{Mode, Program, SizeMismatch};
 use crate::component::MOST_COMBINED;
-use condyle_math::{Affine, Quat, Scalar};
+use condyle_math::{Affine, Lane, Quat, Scalar};
 
 /// The largest absolute value of a scalar; larger ones are clamped.
 const MOST: f64 = 1e9;
@@ -190,32 +190,38 @@ impl Program {
     /// computes the limit rows.
     fn run_cone<S: Scalar>(&self, cone: u32, mode: Mode, scalars: &mut [S]) {
         let call = &self.code.cones[cone as usize];
-        let mut asked = [0.0; 4];
-        let mut values = [S::zero(); 4];
+        let mut numbers = [S::zero(); 4];
         let n = call.inputs.len();
-        for (i, &input) in call.inputs.iter().enumerate() {
-            values[i] = scalars[input.index()];
-            asked[i] = values[i].value();
+        for (number, &input) in numbers.iter_mut().zip(&call.inputs) {
+            *number = scalars[input.index()];
         }
+        // Which side of the boundary is nearest differs from lane to lane.
         if mode == Mode::Posed {
-            if let Some(legal) = call.component.legal(&asked[..n]) {
+            numbers = S::lane_by_lane(numbers, |asked| {
                 // Constants: the derivative of a moved number is taken as 0.
-                values = legal.map(S::from_f64);
-            }
+                let legal = call.component.legal(&asked.map(Lane::value)[..n]);
+                legal.map_or(asked, |legal| legal.map(Scalar::from_f64))
+            });
             // The effective posture is legal: no violation remains.
             call.rows.iter().for_each(|&row| scalars[row.index()] = S::zero());
         } else {
-            let rows = call.component.open_rows(&asked[..n]);
-            for (&register, (value, slopes)) in call.rows.iter().zip(rows) {
-                let slopes = call.component.stored_slopes(&asked[..n], slopes);
-                // A row is known by value and slopes: Σ x.chain(0, slope) adds the derivatives
-                // only.
-                let terms = values[..n].iter().zip(slopes);
-                scalars[register.index()] = terms
-                    .fold(S::from_f64(value), |sum, (x, slope)| sum + x.chain(|_| (0.0, slope)));
+            let rows = S::lane_by_lane(numbers, |asked| {
+                let values = &asked.map(Lane::value)[..n];
+                call.component.open_rows(values).map(|(value, slopes)| {
+                    let slopes = call.component.stored_slopes(values, slopes);
+                    // A row is known by value and slopes: Σ x.chain(0, slope) adds the derivatives
+                    // only.
+                    let terms = asked[..n].iter().zip(slopes);
+                    terms.fold(Scalar::from_f64(value), |sum: S::Lane, (x, slope)| {
+                        sum + x.chain(|_| (0.0, slope))
+                    })
+                })
+            });
+            for (&register, row) in call.rows.iter().zip(rows) {
+                scalars[register.index()] = row;
             }
         }
-        for (&output, value) in call.outputs.iter().zip(values) {
+        for (&output, value) in call.outputs.iter().zip(numbers) {
             scalars[output.index()] = value;
         }
     }
@@ -223,14 +229,22 @@ impl Program {
     /// Evaluates a contact: the transform of its two rotations, and its report.
     fn run_contact<S: Scalar>(&self, contact: u32, pose: &mut Pose<S>) {
         let call = &self.code.contacts[contact as usize];
-        let mut drivers = [S::zero(); 2];
-        for (value, &driver) in drivers.iter_mut().zip(&call.drivers) {
+        let drivers = call.drivers.len();
+        let mut inputs = [S::zero(); 14];
+        inputs[..12].copy_from_slice(&pose.transforms[call.frame.index()].to_columns());
+        for (value, &driver) in inputs[12..].iter_mut().zip(&call.drivers) {
             *value = pose.scalars[driver.index()];
         }
-        let frame = pose.transforms[call.frame.index()];
-        let glide = call.law.glide(frame, &drivers[..call.drivers.len()]);
-        pose.transforms[call.output.index()] = Affine::from_rotation(glide.rotation);
-        let report = [glide.angles[0], glide.angles[1], glide.gaps[0], glide.gaps[1]];
-        pose.scalars[call.report.index()..][..4].copy_from_slice(&report);
+        // How many angles there are to choose from differs from lane to lane.
+        let [turns @ .., a, b, c, d] = S::lane_by_lane(inputs, |[frame @ .., first, second]| {
+            let glide = call.law.glide(Affine::from_columns(frame), &[first, second][..drivers]);
+            let ([a, b], [c, d]) = (glide.angles, glide.gaps);
+            let mut numbers = [Scalar::zero(); 16];
+            numbers[..12].copy_from_slice(&Affine::from_rotation(glide.rotation).to_columns());
+            numbers[12..].copy_from_slice(&[a, b, c, d]);
+            numbers
+        });
+        pose.transforms[call.output.index()] = Affine::from_columns(turns);
+        pose.scalars[call.report.index()..][..4].copy_from_slice(&[a, b, c, d]);
     }
 }

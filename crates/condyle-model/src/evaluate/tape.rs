@@ -154,8 +154,8 @@ impl Recorder<f64> for Tape<'_> {
         }
     }
 
-    fn deformation(&mut self, frame: Affine, rate: impl FnOnce() -> Mat3) {
-        self.emit_rate(|| Rate::of_linear(rate()).transformed(frame));
+    fn deformation(&mut self, frame: Affine, by: f64, rate: impl FnOnce(f64) -> Mat3) {
+        self.emit_rate(|| Rate::of_linear(rate(by)).transformed(frame));
     }
 
     fn law(&mut self, code: &Code, law: u32, before: Affine) {

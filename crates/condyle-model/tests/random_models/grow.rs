@@ -183,6 +183,12 @@ fn random_model_with(
     }
     finish(&mut b, &rigid);
     let model = b.build().unwrap_or_else(|findings| panic!("seed {seed}: {findings:?}"));
+    let stored = posture(&model, &mut dice);
+    (model, stored)
+}
+
+/// Stored numbers for a model, some outside their ranges.
+pub(crate) fn posture(model: &Model, dice: &mut Dice) -> Vec<f64> {
     let mut stored = model.defaults();
     for id in model.coordinate_ids() {
         let place = model.stored_range(id);
@@ -193,7 +199,7 @@ fn random_model_with(
             stored[place.start] = if scale { 1.0 + dice.within(0.5) } else { dice.within(1.2) };
         }
     }
-    (model, stored)
+    stored
 }
 
 fn grow_closures(b: &mut ModelBuilder, dice: &mut Dice, rigid: &[SegmentId]) {

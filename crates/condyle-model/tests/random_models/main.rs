@@ -1,8 +1,10 @@
 //! Random trees with all components, against a naive reference and against finite differences.
 
+mod backend;
 mod grow;
 mod naive;
 mod scan;
+mod suite;
 
 use condyle_math::{Affine, Dual, Mat3, Vec3};
 use condyle_model::evaluate::ClosureRows;
@@ -26,38 +28,20 @@ fn retract(model: &Model, stored: &[f64], direction: usize, step: f64) -> Vec<f6
 const TREES: u64 = 1000;
 
 #[test]
-fn a_program_equals_the_naive_evaluator() {
-    let mut doubtful = 0;
-    for seed in 0..TREES {
-        let (model, stored) = grow::random_model(seed);
-        let program = Program::compile(&model);
-        let mut pose = Pose::new(&program);
-        for mode in [Mode::Open, Mode::Posed] {
-            program.evaluate(&stored, mode, &mut pose).unwrap();
-            let twin = naive::Evaluator::new(&model, &stored, mode);
-            let expected: Vec<Affine> = model.segment_ids().map(|id| twin.segment(id)).collect();
-            if twin.doubtful.get() {
-                doubtful += 1;
-                continue;
-            }
-            for (id, expected) in model.segment_ids().zip(expected) {
-                let scale = 1.0 + expected.translation.norm();
-                let off = difference(pose.segment(id), expected);
-                assert!(off < 1e-12 * scale, "seed {seed} {mode:?} {id:?}: {off}");
-            }
-            for id in model.coordinate_ids() {
-                let effective = twin.coordinate(id);
-                for (a, b) in pose.coordinate(&model, id).iter().zip(effective) {
-                    assert!(
-                        (a - b).abs() < 1e-12 * (1.0 + b.abs()),
-                        "seed {seed} {mode:?} {id:?}: {a} {b}"
-                    );
-                }
-            }
-        }
-    }
-    println!("{doubtful} poses with a contact near a tangency left out");
-    assert!(doubtful < TREES / 10, "{doubtful} poses with a contact near a tangency");
+fn the_program_conforms() {
+    suite::conforms(&backend::PLAIN);
+}
+
+#[test]
+fn numbers_with_derivatives_conform() {
+    suite::conforms(&backend::DUAL);
+    suite::equals(&backend::DUAL, &backend::PLAIN);
+}
+
+#[test]
+fn eight_postures_at_once_conform() {
+    suite::conforms(&backend::EIGHT);
+    suite::equals(&backend::EIGHT, &backend::PLAIN);
 }
 
 #[test]
@@ -199,32 +183,6 @@ fn rows_of_closures_equal_central_differences() {
 }
 
 #[test]
-fn legal_coordinates_give_the_same_pose_in_both_modes() {
-    let mut legal = 0;
-    for seed in 0..TREES {
-        let (model, stored) = grow::random_model(seed);
-        let program = Program::compile(&model);
-        let (mut open, mut posed) = (Pose::new(&program), Pose::new(&program));
-        program.evaluate(&stored, Mode::Posed, &mut posed).unwrap();
-        let within = posed.effective().to_vec();
-        program.evaluate(&within, Mode::Open, &mut open).unwrap();
-        program.evaluate(&within, Mode::Posed, &mut posed).unwrap();
-        // A limit may push a coordinate out of its range, or break another limit.
-        let in_range = model.coordinate_ids().all(|id| {
-            let coordinate = model.coordinate(id);
-            let value = model.value(&within, id);
-            coordinate.follows.is_some() || coordinate.range.distance(value) >= 0.0
-        });
-        if in_range && (0..program.limit_row_len()).all(|row| open.limit_row(row) >= 0.0) {
-            legal += 1;
-            assert_eq!(open.segments(), posed.segments(), "seed {seed}");
-            assert_eq!(open.effective(), posed.effective(), "seed {seed}");
-        }
-    }
-    assert!(legal > TREES / 2, "only {legal} of {TREES} were legal");
-}
-
-#[test]
 fn normals_stay_perpendicular_to_what_is_stretched() {
     let mut stretched = 0;
     for seed in 0..TREES {
@@ -274,29 +232,14 @@ fn a_world_placed_elsewhere_carries_everything_along() {
 
 #[test]
 fn a_million_poses_are_finite_whatever_is_asked() {
-    let sizes = [0.0, -0.0, 1.0, 1e3, 1e12, 1e300, f64::INFINITY, f64::NAN, 1e-320];
-    for seed in 0..TREES {
-        let (model, stored) = grow::random_model(seed);
-        let program = Program::compile(&model);
-        let mut pose = Pose::new(&program);
-        let mut dice = grow::Dice::new(seed ^ 0x5eed);
-        let mut asked = stored.clone();
-        for number in 0..1000 {
-            for value in &mut asked {
-                // Half of the numbers are plausible, the others of any size.
-                let size = if number % 2 == 0 { 3.0 } else { sizes[dice.below(sizes.len())] };
-                *value = if size.is_finite() { dice.within(size) } else { size };
-            }
-            for mode in [Mode::Open, Mode::Posed] {
-                program.evaluate(&asked, mode, &mut pose).unwrap();
-                for (id, segment) in model.segment_ids().zip(pose.segments()) {
-                    let finite = segment.to_rows().iter().all(|x| x.is_finite());
-                    assert!(finite, "seed {seed} {mode:?} {id:?}: {segment:?} at {asked:?}");
-                }
-                assert!(pose.effective().iter().all(|x| x.is_finite()), "seed {seed} {asked:?}");
-            }
-        }
-        let wrong = program.evaluate(&vec![0.0; stored.len() + 1], Mode::Open, &mut pose);
-        assert_eq!(wrong.unwrap_err().found, stored.len() + 1);
-    }
+    suite::stays_finite(&backend::PLAIN, 1000);
+}
+
+#[test]
+fn a_list_of_the_wrong_length_is_refused() {
+    let (model, stored) = grow::random_model(0);
+    let program = Program::compile(&model);
+    let longer = vec![0.0; stored.len() + 1];
+    let wrong = program.evaluate(&longer, Mode::Open, &mut Pose::new(&program));
+    assert_eq!(wrong.unwrap_err().found, stored.len() + 1);
 }

@@ -4,6 +4,7 @@ mod arms;
 mod figure;
 mod human;
 mod knee;
+mod lanes;
 mod legs;
 mod limb;
 mod names;

@@ -40,7 +40,7 @@ pub use pairs::ContactPair;
 use super::Signal;
 use crate::position::SegmentId;
 use closest::distance;
-use condyle_math::{Affine, Mat3, Scalar, Vec3};
+use condyle_math::{Affine, Lane, Mat3, Scalar, Vec3};
 use pairs::Places;
 use quartic::{Quartic, Turn};
 
@@ -246,12 +246,14 @@ impl Gliding {
 
     /// The two rotations that bring the points to the ellipsoid.
     ///
+    /// Which root is used is decided by values, so that this is for one lane.
+    ///
     /// `scapula_in_ellipsoid` is the rigid transform F of the gliding segment before the rotations;
     /// its origin is the centre of rotation. For a pose that is not finite there is no rotation and
     /// the gaps are infinite. If interpolation moves the first point to the origin, there is no
     /// second axis and ψ is 0.
     #[inline]
-    pub fn glide<S: Scalar>(&self, scapula_in_ellipsoid: Affine<S>, drivers: &[S]) -> Glide<S> {
+    pub fn glide<S: Lane>(&self, scapula_in_ellipsoid: Affine<S>, drivers: &[S]) -> Glide<S> {
         let [first, second] = self.points(drivers);
         // F in the space in which the ellipsoid is the unit sphere: rows divided by the half axes.
         let per_radius = self.per_radius.cast();
@@ -291,7 +293,7 @@ impl Gliding {
 
     /// The rotation about an axis through the origin that brings a point to the unit sphere.
     #[inline(always)]
-    fn turn<S: Scalar>(&self, scaled: Affine<S>, axis: Vec3<S>, point: Vec3<S>) -> Settled<S> {
+    fn turn<S: Lane>(&self, scaled: Affine<S>, axis: Vec3<S>, point: Vec3<S>) -> Settled<S> {
         // The point moves on the circle centre + u·cos θ + w·sin θ, an ellipse in the scaled space.
         let along = axis * axis.dot(point);
         let centre = scaled * along;
@@ -310,7 +312,7 @@ impl Gliding {
     ///
     /// Its gradient is the outward normal.
     #[cold]
-    fn gap<S: Scalar>(&self, scaled: Vec3<S>) -> S {
+    fn gap<S: Lane>(&self, scaled: Vec3<S>) -> S {
         let point = scaled.times(self.radii.cast());
         let value = Vec3::new(point.x.value(), point.y.value(), point.z.value());
         let distance = distance(value, self.radii);
@@ -354,7 +356,7 @@ fn radians_of(next: Turn) -> f64 {
 /// The root of f nearest to rest, or without roots the extremum of f nearest to 0; and whether it
 /// is a root.
 #[inline]
-fn settle<S: Scalar>(quartic: &Quartic<S>) -> (Settled<S>, bool) {
+fn settle<S: Lane>(quartic: &Quartic<S>) -> (Settled<S>, bool) {
     let value = quartic.value();
     let rest =
         Settled { cos: S::one(), sin: S::zero(), angle: S::zero(), gap: S::zero(), next: NO_NEXT };

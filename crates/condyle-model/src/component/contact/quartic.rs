@@ -12,7 +12,7 @@
 //! change of sign is found. A pair of roots can be missed only where f exceeds 0 between them by no
 //! more than its rounding error.
 
-use condyle_math::{Scalar, Vec3};
+use condyle_math::{Lane, Scalar, Vec3};
 
 /// The second-degree trigonometric polynomial A + B·cos θ + C·sin θ + D·cos 2θ + E·sin 2θ.
 #[derive(Clone, Copy, Debug)]
@@ -68,18 +68,6 @@ impl<S: Scalar> Quartic<S> {
         }
     }
 
-    /// The coefficients without their derivatives.
-    #[inline(always)]
-    pub(super) fn value(&self) -> Quartic {
-        Quartic {
-            constant: self.constant.value(),
-            cos: self.cos.value(),
-            sin: self.sin.value(),
-            cos2: self.cos2.value(),
-            sin2: self.sin2.value(),
-        }
-    }
-
     /// f′, which has the same form.
     #[inline(always)]
     pub(super) fn slope(&self) -> Self {
@@ -97,6 +85,20 @@ impl<S: Scalar> Quartic<S> {
     pub(super) fn at(&self, (c, s): Turn) -> S {
         let first = self.cos.scale(c) + self.sin.scale(s);
         self.constant + first + self.cos2.scale(c * c - s * s) + self.sin2.scale(2.0 * c * s)
+    }
+}
+
+impl<S: Lane> Quartic<S> {
+    /// The coefficients without their derivatives.
+    #[inline(always)]
+    pub(super) fn value(&self) -> Quartic {
+        Quartic {
+            constant: self.constant.value(),
+            cos: self.cos.value(),
+            sin: self.sin.value(),
+            cos2: self.cos2.value(),
+            sin2: self.sin2.value(),
+        }
     }
 }
 
