@@ -43,7 +43,8 @@ use condyle_diagnostics::{Error, Read};
 use condyle_model::Model;
 use condyle_model::component::Registry;
 
-const FORM: Form = Form { kind: Kind::Model, keys: keys::TOP, own: &["up"] };
+const FORM: Form =
+    Form { kind: Kind::Model, keys: keys::TOP, own: &["up"], repeated: keys::REPEATED };
 
 /// A model document: the model, and the text that describes it.
 #[derive(Clone, Debug, PartialEq)]
