@@ -3,7 +3,7 @@
 
 use super::texts::{Context, Spot};
 use condyle_diagnostics::Diagnostic;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// How many instances of one template are named in findings about one of its places.
 const MOST_INSTANCES: usize = 3;
@@ -56,8 +56,10 @@ impl Findings {
             }
             let said = say();
             // A value that a template uses in many places is wrong once.
-            let again = spot.context > 0 && self.kept.contains(&(spot, said.clone()));
-            if !again {
+            let again = |(other, known): &(Spot, Diagnostic)| {
+                other.within(0) == spot.within(0) && *known == said
+            };
+            if !self.kept.iter().any(again) {
                 self.kept.push((spot, said));
             }
             return;
@@ -92,7 +94,9 @@ impl Findings {
         let mut surplus = self.surplus;
         let mut kept: Vec<Option<(Spot, Diagnostic)>> = self.kept.into_iter().map(Some).collect();
         for group in self.groups.values() {
-            let everywhere = group.count == group.of && group.of > 1;
+            let skeletons = group.kept.iter().filter_map(|&i| kept[i].as_ref()).map(skeleton);
+            let skeletons: HashSet<String> = skeletons.collect();
+            let everywhere = group.count == group.of && group.of > 1 && skeletons.len() == 1;
             match (&group.kept[..], everywhere) {
                 ([first, others @ ..], true) => {
                     others.iter().for_each(|&other| kept[other] = None);
@@ -112,4 +116,14 @@ impl Findings {
         };
         (kept.into_iter().flatten().map(said).collect(), surplus)
     }
+}
+
+/// A message without what it quotes.
+fn skeleton((_, said): &(Spot, Diagnostic)) -> String {
+    let mut quoted = false;
+    let outside = |c: &char| {
+        quoted ^= matches!(c, '`' | '[' | ']');
+        !quoted
+    };
+    said.message.chars().filter(outside).collect()
 }

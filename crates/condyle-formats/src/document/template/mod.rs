@@ -98,15 +98,17 @@ impl Reader<'_> {
         let before = self.texts.count();
         let name = &entry.key;
         let label = format!("template.{}", name.text);
-        let known = [TEMPLATE, repeated].concat();
+        let known = [TEMPLATE, repeated, &["template"]].concat();
         let fields = self.table(&entry.node, name.spot, label, &known);
-        let parameters = self.declared(&fields);
+        if let Some(nested) = fields.entries().iter().find(|e| e.key.text == "template") {
+            let message = "a template cannot hold templates";
+            let help = "write both side by side, each with its instances";
+            self.texts.error(nested.key.spot, "document/template", message, help);
+        }
+        let parameters = self.declared(&fields)?;
         let is_body = |e: &&Entry| repeated.contains(&e.key.text.as_str());
         let body = fields.entries().iter().filter(is_body).collect();
         let template = Template { name, parameters, body };
-        if self.texts.count() > before {
-            return None;
-        }
         self.uses(&template);
         let rows = match fields.get("instances") {
             Some(node) => self.list(node, "instances").unwrap_or_default(),
@@ -126,13 +128,12 @@ impl Reader<'_> {
         (self.texts.count() == before).then_some((template, instances))
     }
 
-    /// The parameters with their defaults.
-    fn declared<'t>(&mut self, fields: &Fields<'t>) -> Vec<Parameter<'t>> {
+    /// The parameters with their defaults; `None` after an error.
+    fn declared<'t>(&mut self, fields: &Fields<'t>) -> Option<Vec<Parameter<'t>>> {
+        let before = self.texts.count();
         let wanted = "the names of what differs between its instances, such as [\"name\"]";
-        let names = match self.required(fields, "parameters", wanted) {
-            Some(node) => self.names(node, "parameters").0,
-            None => return vec![],
-        };
+        let node = self.required(fields, "parameters", wanted)?;
+        let names = self.names(node, "parameters").0;
         let mut parameters: Vec<Parameter<'t>> = vec![];
         for name in names {
             let letter = |c: char| c.is_alphanumeric() || c == '_';
@@ -155,7 +156,7 @@ impl Reader<'_> {
                 }
             }
         }
-        parameters
+        (self.texts.count() == before).then_some(parameters)
     }
 
     fn unknown_parameter(&mut self, key: &Name, label: &str, parameters: &[Parameter<'_>]) {
@@ -208,8 +209,7 @@ impl Reader<'_> {
             _ => self.texts.line(row.spot),
         };
         if !absent.is_empty() && self.texts.count() == before {
-            let absent = listed(absent.iter().map(|name| format!("`{name}`")));
-            let message = format!("instance `{name}` of [{label}] has no {absent}");
+            let message = format!("instance `{name}` of [{label}] has no {}", listed(absent));
             let all = listed(parameters.iter().map(|p| &p.name.text));
             let help = format!("give {all}, or a default in `defaults`");
             self.texts.error(row.spot, "document/missing", message, help);
