@@ -16,6 +16,8 @@ pub(super) struct Findings {
     most: usize,
     kept: Vec<(Spot, Diagnostic)>,
     surplus: usize,
+    /// How many were said before.
+    repeated: usize,
     groups: HashMap<Key, Group>,
     /// How many findings there are with a code at a spot of an instance.
     ordinals: HashMap<(Spot, &'static str), u32>,
@@ -38,7 +40,7 @@ struct Group {
 impl Findings {
     pub(super) fn new(most: usize) -> Self {
         let (groups, ordinals) = (HashMap::new(), HashMap::new());
-        Self { most, kept: vec![], surplus: 0, groups, ordinals }
+        Self { most, kept: vec![], surplus: 0, repeated: 0, groups, ordinals }
     }
 
     /// Adds what `say` says, if it is kept.
@@ -59,8 +61,9 @@ impl Findings {
             let again = |(other, known): &(Spot, Diagnostic)| {
                 other.within(0) == spot.within(0) && *known == said
             };
-            if !self.kept.iter().any(again) {
-                self.kept.push((spot, said));
+            match self.kept.iter().any(again) {
+                true => self.repeated += 1,
+                false => self.kept.push((spot, said)),
             }
             return;
         };
@@ -84,9 +87,10 @@ impl Findings {
         }
     }
 
+    /// How many were added.
     pub(super) fn count(&self) -> usize {
         let grouped = self.groups.values().map(|g| g.count - g.kept.len()).sum::<usize>();
-        self.kept.len() + self.surplus + grouped
+        self.kept.len() + self.surplus + self.repeated + grouped
     }
 
     /// All that is kept, with what `beside` adds to the message at a spot, and the number of others.

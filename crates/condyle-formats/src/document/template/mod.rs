@@ -74,7 +74,7 @@ pub(super) fn expand(
         if filled.is_none() {
             let name = &template.name.text;
             let message = format!("the instances of template `{name}` are too large");
-            let help = format!("all instances may have at most {LARGEST} bytes");
+            let help = format!("write fewer, or shorter names: all have at most {LARGEST} bytes");
             reader.texts.error(template.name.spot, "document/template-size", message, help);
             break;
         }
