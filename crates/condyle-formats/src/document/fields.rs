@@ -2,6 +2,7 @@
 //! and reading goes on.
 
 use super::number::Constant;
+use super::template::Given;
 use super::texts::{Angles, Name, Spot, Texts};
 use super::tree::{Entry, Node, Value};
 use condyle_diagnostics::did_you_mean;
@@ -12,6 +13,8 @@ use std::collections::HashMap;
 pub(super) struct Reader<'s> {
     pub(super) texts: &'s mut Texts,
     pub(super) constants: HashMap<String, Constant>,
+    /// What instances of templates give for their parameters, by their context.
+    pub(super) given: HashMap<u32, Given>,
 }
 
 /// A table whose keys are known.

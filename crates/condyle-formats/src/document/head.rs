@@ -84,7 +84,7 @@ pub fn kind(text: impl AsRef<[u8]>) -> Option<Kind> {
 /// Checks the head of one text of a document of the expected kind.
 pub(super) fn check(texts: &mut Texts, file: u32, entries: &[Entry], expected: Kind) -> Option<()> {
     let (_, name, noun) = KINDS[expected as usize];
-    let start = Spot { file, start: 0 };
+    let start = Spot::new(file, 0);
     let find = |key: &str| entries.iter().find(|e| e.key.text == key).map(|e| &e.node);
     match find("condyle") {
         Some(Node { value: Value::Number(1.0), .. }) => {}

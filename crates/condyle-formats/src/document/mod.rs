@@ -3,12 +3,13 @@
 //! ```text
 //! document   = condyle = 1, kind = "model"|..., name, angles = "deg"|"rad",
 //!              include = ["other.toml"], constants, and the tables of its kind
+//! template.T = parameters, defaults, instances, and tables of its kind (of models only)
 //! function   = number | { constant|linear|ends|polynomial|spline|lines = ..., factor = ... }
 //! number     = a number, or a sum of products of numbers and constants: "$name", "-0.5 * $name"
 //! ```
 //!
 //! This folder holds what all kinds share: the tree of values with their places, included texts,
-//! typed access to fields, numbers with units, functions, and messages shown beside the text. It
+//! templates, typed access to fields, numbers with units, functions, and messages shown beside the text. It
 //! knows nothing of any kind. [`model`] is the kind that describes models; its functions are
 //! available here, too. [`setup`] is how recordings are tracked, [`names`] what their labels are called
 //! in models. [`kind()`] tells the kind of a text.
@@ -22,6 +23,7 @@
 //! reads its fields with the `Reader` from `read_kind`.
 
 mod fields;
+mod findings;
 mod function;
 mod head;
 mod include;
@@ -30,6 +32,7 @@ pub mod names;
 mod number;
 mod render;
 pub mod setup;
+mod template;
 #[cfg(test)]
 mod tests;
 mod texts;
@@ -52,6 +55,8 @@ struct Form {
     keys: &'static [&'static str],
     /// Those of them that are ignored in an included text.
     own: &'static [&'static str],
+    /// Those of them whose tables a template may hold; none if this kind has no templates.
+    repeated: &'static [&'static str],
 }
 
 /// Reads a document of one kind: its texts are merged and its head and constants read, then `read`
@@ -64,13 +69,18 @@ fn read_kind<T>(
 ) -> Result<Read<T>, Error> {
     let mut texts = Texts::default();
     let value = include::load(&mut texts, form, text, include).and_then(|entries| {
+        let mut reader =
+            Reader { texts: &mut texts, constants: HashMap::new(), given: HashMap::new() };
+        if let Some(constants) = entries.iter().find(|e| e.key.text == "constants") {
+            reader.define(&constants.node);
+        }
+        let entries = match form.repeated {
+            [] => entries,
+            repeated => template::expand(&mut reader, repeated, entries)?,
+        };
         let root = Node { value: Value::Table(entries), spot: Spot::default() };
-        let mut reader = Reader { texts: &mut texts, constants: HashMap::new() };
         let known = [head::HEAD, form.keys].concat();
         let top = reader.table(&root, root.spot, String::new(), &known);
-        if let Some(node) = top.get("constants") {
-            reader.define(node);
-        }
         read(reader, &top)
     });
     let warnings = texts.finish()?;

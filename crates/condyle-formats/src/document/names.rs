@@ -8,7 +8,7 @@
 use super::{Form, Kind, read_kind};
 use condyle_diagnostics::{Error, Read};
 
-const FORM: Form = Form { kind: Kind::Names, keys: &["names"], own: &[] };
+const FORM: Form = Form { kind: Kind::Names, keys: &["names"], own: &[], repeated: &[] };
 
 /// For each label of a recording what it may be called in a model, the likeliest first.
 pub type NameTable = Vec<(String, Vec<String>)>;

@@ -1,9 +1,11 @@
 //! Numbers: plain, or sums of products of numbers and constants.
 
 use super::fields::Reader;
+use super::template::shallow;
 use super::texts::Spot;
 use super::tree::{Node, Value};
 use condyle_diagnostics::nearest;
+use std::collections::HashMap;
 
 /// The value of a named constant.
 #[derive(Clone, Copy)]
@@ -87,6 +89,10 @@ impl Reader<'_> {
             self.texts.error(spot, "document/number", message, help);
             return None;
         };
+        if let Some(node) = self.given.get(&spot.context).and_then(|given| given.get(name)) {
+            let (value, at) = (shallow(node).value, node.spot);
+            return self.parameter(name, &value, spot, at);
+        }
         match self.constants.get(name) {
             Some(Constant::Is(value)) => return Some(*value),
             Some(Constant::Wrong) => return None,
@@ -98,15 +104,35 @@ impl Reader<'_> {
             }
             None => {}
         }
-        let known = self.constants.keys().map(String::as_str);
+        let parameters = self.given.get(&spot.context);
+        let known = self.constants.keys().chain(parameters.into_iter().flat_map(HashMap::keys));
         self.texts.error_with(spot, "document/unknown-name", || {
-            let help = match nearest(name, known) {
+            let help = match nearest(name, known.map(String::as_str)) {
                 Some(near) => format!("did you mean `${near}`?"),
                 None => "define it in the table `constants`".to_owned(),
             };
-            (format!("unknown constant `${name}`"), help)
+            let what = if parameters.is_some() { "parameter or constant" } else { "constant" };
+            (format!("unknown {what} `${name}`"), help)
         });
         None
+    }
+
+    /// The number that an instance gives at `at` for a parameter of its template.
+    fn parameter(&mut self, name: &str, value: &Value, spot: Spot, at: Spot) -> Option<f64> {
+        match value {
+            Value::Number(number) if number.is_finite() => Some(*number),
+            Value::Text(text) if text.contains(['$', '*']) => self.sum(text, at),
+            value => {
+                let message = match value {
+                    Value::Number(_) => format!("`${name}` is not a finite number"),
+                    Value::Text(text) => format!("`${name}` is `{text}`, not a number"),
+                    value => format!("`${name}` is {}, not a number", value.describe()),
+                };
+                let help = "give a number in the instance";
+                self.texts.error(spot, "document/type", message, help);
+                None
+            }
+        }
     }
 
     /// Defines the constants in the order of the text: each may use those before it.

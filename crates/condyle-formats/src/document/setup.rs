@@ -37,6 +37,7 @@ const FORM: Form = Form {
         "loop_weight",
     ],
     own: &[],
+    repeated: &[],
 };
 
 /// How recordings are tracked; what is not said is `None` or empty.

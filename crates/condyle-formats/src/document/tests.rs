@@ -7,7 +7,7 @@ use condyle_diagnostics::{Error, Read, Severity};
 use condyle_math::Vec3;
 use proptest::prelude::*;
 
-const FORM: Form = Form { kind: Kind::Names, keys: &["of", "marker"], own: &["of"] };
+const FORM: Form = Form { kind: Kind::Names, keys: &["of", "marker"], own: &["of"], repeated: &[] };
 const MARKER: &[&str] = &["called", "weight", "offset", "lean", "grows"];
 
 #[derive(Debug, PartialEq)]
@@ -42,7 +42,7 @@ fn markers(mut reader: Reader<'_>, top: &Fields<'_>) -> Option<Vec<Marker>> {
             let message = format!("marker `{}` has no weight", entry.key.text);
             let spot = entry.key.spot;
             let said = reader.texts.said(spot, Severity::Warning, "names/weight", message);
-            reader.texts.warn(said);
+            reader.texts.warn(spot, said);
         }
         let (Some(called), Some(weight), Some(offset), Some(lean)) = (called, weight, offset, lean)
         else {

@@ -1,15 +1,49 @@
 //! The texts of a document, places in them, and the errors and warnings about them.
 
+use super::findings::Findings;
 use condyle_diagnostics::{Diagnostic, Error, Place, Severity};
 
 /// How many errors are kept; more than that have a common cause.
 const MOST_ERRORS: usize = 50;
 
 /// A place: the number of its text, and the byte where it begins.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct Spot {
     pub(super) file: u32,
+    /// The [`Context`] in which it is read, counted from 1; 0 for the text as it stands.
+    pub(super) context: u32,
     pub(super) start: usize,
+}
+
+impl Spot {
+    pub(super) fn new(file: u32, start: usize) -> Self {
+        Self { file, context: 0, start }
+    }
+
+    pub(super) fn within(self, context: u32) -> Self {
+        Self { context, ..self }
+    }
+}
+
+/// The other place of what a template gives.
+#[derive(Clone, Debug)]
+pub(super) enum Context {
+    /// A part of a template, for one of its instances.
+    Instance {
+        template: String,
+        name: String,
+        /// The place of the instance.
+        at: Spot,
+        /// How many instances the template has.
+        of: usize,
+    },
+    /// A value that an instance gives for a parameter.
+    Parameter {
+        template: String,
+        name: String,
+        /// Where the template uses it.
+        at: Spot,
+    },
 }
 
 /// A name in a document, and its place.
@@ -38,12 +72,18 @@ struct File {
 }
 
 /// All texts of a document, with the errors and warnings about them.
-#[derive(Default)]
 pub(super) struct Texts {
     files: Vec<File>,
-    errors: Vec<Diagnostic>,
-    surplus: usize,
-    warnings: Vec<Diagnostic>,
+    contexts: Vec<Context>,
+    errors: Findings,
+    warnings: Findings,
+}
+
+impl Default for Texts {
+    fn default() -> Self {
+        let (errors, warnings) = (Findings::new(MOST_ERRORS), Findings::new(usize::MAX));
+        Self { files: vec![], contexts: vec![], errors, warnings }
+    }
 }
 
 impl Texts {
@@ -72,21 +112,23 @@ impl Texts {
         self.files[file as usize].angles = angles;
     }
 
-    /// The unit of angles at a spot.
-    pub(super) fn angles(&self, spot: Spot) -> Angles {
-        self.files[spot.file as usize].angles
+    /// Adds a context and returns its number.
+    pub(super) fn add_context(&mut self, context: Context) -> u32 {
+        self.contexts.push(context);
+        self.contexts.len() as u32
     }
 
-    fn place(&self, spot: Spot) -> Place {
-        let file = &self.files[spot.file as usize];
-        let mut start = spot.start.min(file.text.len());
-        while !file.text.is_char_boundary(start) {
-            start -= 1;
-        }
-        let line = file.line_starts.partition_point(|&s| s <= start);
-        let from = file.line_starts[line - 1];
-        let column = file.text[from..start].chars().count() + 1;
-        Place { line, column, byte: Some(start as u64) }
+    pub(super) fn context(&self, spot: Spot) -> Option<&Context> {
+        context(&self.contexts, spot)
+    }
+
+    /// The unit of angles at a spot. A value that is given to a template has the template's.
+    pub(super) fn angles(&self, spot: Spot) -> Angles {
+        let file = match context(&self.contexts, spot) {
+            Some(Context::Parameter { at, .. }) => at.file,
+            _ => spot.file,
+        };
+        self.files[file as usize].angles
     }
 
     /// A diagnostic about a spot. In an included text, it is placed at the line that includes it.
@@ -97,23 +139,17 @@ impl Texts {
         code: &'static str,
         message: String,
     ) -> Diagnostic {
-        let file = &self.files[spot.file as usize];
-        match file.included_at {
-            None => Diagnostic::new(severity, code, message).at(self.place(spot)),
-            Some(at) => {
-                let Place { line, column, .. } = self.place(spot);
-                let message = format!("{}:{line}:{column}: {message}", file.name);
-                Diagnostic::new(severity, code, message).at(self.place(at))
-            }
-        }
+        said(&self.files, spot, severity, code, message)
     }
 
-    pub(super) fn push(&mut self, error: Diagnostic) {
-        if self.errors.len() < MOST_ERRORS {
-            self.errors.push(error);
-        } else {
-            self.surplus += 1;
-        }
+    /// The line of a spot, with its file where that is an included one.
+    pub(super) fn line(&self, spot: Spot) -> String {
+        line(&self.files, spot)
+    }
+
+    pub(super) fn push(&mut self, spot: Spot, error: Diagnostic) {
+        let context = context(&self.contexts, spot);
+        self.errors.add(spot, error.code, context, || error);
     }
 
     pub(super) fn error(
@@ -133,34 +169,96 @@ impl Texts {
         code: &'static str,
         say: impl FnOnce() -> (M, String),
     ) {
-        if self.errors.len() < MOST_ERRORS {
+        let context = context(&self.contexts, spot);
+        self.errors.add(spot, code, context, || {
             let (message, help) = say();
-            let said = self.said(spot, Severity::Error, code, message.into());
-            self.errors.push(said.with_help(help));
-        } else {
-            self.surplus += 1;
-        }
+            said(&self.files, spot, Severity::Error, code, message.into()).with_help(help)
+        });
     }
 
-    pub(super) fn warn(&mut self, warning: Diagnostic) {
-        self.warnings.push(warning);
+    pub(super) fn warn(&mut self, spot: Spot, warning: Diagnostic) {
+        let context = context(&self.contexts, spot);
+        self.warnings.add(spot, warning.code, context, || warning);
     }
 
     pub(super) fn count(&self) -> usize {
-        self.errors.len() + self.surplus
+        self.errors.count()
     }
 
     pub(super) fn failed(&self) -> bool {
-        !self.errors.is_empty()
+        self.count() > 0
     }
 
     /// The warnings, or all errors in the order of the text.
-    pub(super) fn finish(mut self) -> Result<Vec<Diagnostic>, Error> {
-        self.errors.sort_by_key(|e| e.place.map_or(u64::MAX, |p| p.byte.unwrap_or(0)));
-        if self.surplus > 0 {
-            let message = format!("and {} more errors", self.surplus);
-            self.errors.push(Diagnostic::error("document/more", message));
+    pub(super) fn finish(self) -> Result<Vec<Diagnostic>, Error> {
+        let Self { files, contexts, errors, warnings } = self;
+        let beside = |spot| beside(&files, &contexts, spot);
+        let (mut errors, surplus) = errors.finish(beside);
+        errors.sort_by_key(|e| e.place.map_or(u64::MAX, |p| p.byte.unwrap_or(0)));
+        if surplus > 0 {
+            let message = format!("and {surplus} more errors");
+            errors.push(Diagnostic::error("document/more", message));
         }
-        Error::of(self.errors).map_or(Ok(self.warnings), Err)
+        let warnings = warnings.finish(beside).0;
+        Error::of(errors).map_or(Ok(warnings), Err)
+    }
+}
+
+fn context(contexts: &[Context], spot: Spot) -> Option<&Context> {
+    contexts.get((spot.context as usize).checked_sub(1)?)
+}
+
+fn place(files: &[File], spot: Spot) -> Place {
+    let file = &files[spot.file as usize];
+    let mut start = spot.start.min(file.text.len());
+    while !file.text.is_char_boundary(start) {
+        start -= 1;
+    }
+    let line = file.line_starts.partition_point(|&s| s <= start);
+    let from = file.line_starts[line - 1];
+    let column = file.text[from..start].chars().count() + 1;
+    Place { line, column, byte: Some(start as u64) }
+}
+
+/// The line of a spot, with its file where that is an included one.
+fn line(files: &[File], spot: Spot) -> String {
+    let line = place(files, spot).line;
+    let file = &files[spot.file as usize];
+    match file.included_at {
+        None => format!("line {line}"),
+        Some(_) => format!("{}:{line}", file.name),
+    }
+}
+
+fn said(
+    files: &[File],
+    spot: Spot,
+    severity: Severity,
+    code: &'static str,
+    message: String,
+) -> Diagnostic {
+    let file = &files[spot.file as usize];
+    match file.included_at {
+        None => Diagnostic::new(severity, code, message).at(place(files, spot)),
+        Some(at) => {
+            let Place { line, column, .. } = place(files, spot);
+            let message = format!("{}:{line}:{column}: {message}", file.name);
+            Diagnostic::new(severity, code, message).at(place(files, at))
+        }
+    }
+}
+
+/// What is added to a message: the other place of its spot.
+fn beside(files: &[File], contexts: &[Context], spot: Spot) -> String {
+    match context(contexts, spot) {
+        None => String::new(),
+        Some(Context::Instance { template, name, at, .. }) => {
+            let line = line(files, *at);
+            format!(", in instance `{name}` of template `{template}` ({line})")
+        }
+        Some(Context::Parameter { template, name, at }) => {
+            let line = line(files, *at);
+            format!(", which is `{name}` of template `{template}` ({line})")
+        }
     }
 }

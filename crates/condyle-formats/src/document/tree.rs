@@ -36,20 +36,26 @@ pub(super) struct Entry {
 impl Node {
     /// Its type, with an article.
     pub(super) fn describe(&self) -> &'static str {
-        match self.value {
-            Value::Text(_) => "a string",
-            Value::Number(_) => "a number",
-            Value::Bool(_) => "a boolean",
-            Value::Date => "a date",
-            Value::List(_) => "a list",
-            Value::Table(_) => "a table",
+        self.value.describe()
+    }
+}
+
+impl Value {
+    pub(super) fn describe(&self) -> &'static str {
+        match self {
+            Self::Text(_) => "a string",
+            Self::Number(_) => "a number",
+            Self::Bool(_) => "a boolean",
+            Self::Date => "a date",
+            Self::List(_) => "a list",
+            Self::Table(_) => "a table",
         }
     }
 }
 
 /// Parses one text; `None` after an error.
 pub(super) fn parse(texts: &mut Texts, file: u32, text: &str) -> Option<Vec<Entry>> {
-    let at = |start: usize| Spot { file, start };
+    let at = |start: usize| Spot::new(file, start);
     if text.len() > LONGEST {
         let message = format!("the document has {} bytes", text.len());
         let help = format!("at most {LONGEST} are read");
@@ -162,7 +168,7 @@ pub(super) fn head_end(text: &str) -> usize {
 
 /// Recursive, no deeper than the parser itself went (80 brackets, 80 parts of a key).
 fn convert(file: u32, value: DeValue<'_>, spot: Spot) -> Node {
-    let at = |start: usize| Spot { file, start };
+    let at = |start: usize| Spot::new(file, start);
     let value = match value {
         DeValue::String(text) => Value::Text(text.into_owned()),
         DeValue::Integer(n) => {

@@ -10,6 +10,7 @@ mod reading;
 mod round_trip;
 mod shapes;
 mod skeletons;
+mod templates;
 mod wrong;
 
 use condyle_formats::document::{self, Document};

@@ -169,6 +169,17 @@ fn what_reads_a_broken_joint_is_not_blamed() {
 }
 
 #[test]
+fn what_both_sides_share_is_told_once() {
+    let found = errors(
+        "mirror = { plane = \"z\", from = \"_r\", to = \"_l\" }\n[segment.s_r]\n\
+         [joint_set.j_r.component.k.compensate]\nsegment = \"s_r\"\nancestors = [\"rips\"]\n",
+    );
+    let once = "line 7, column 14: unknown segment `rips` (name a segment of this model; omit it for \
+                the world)";
+    assert_eq!(found, [once]);
+}
+
+#[test]
 fn a_component_is_found_in_its_own_joint_set() {
     let found = errors(
         "[joint_set.a.coordinate.q]\n[joint_set.a.component.k.rotate]\nangle = \"q\"\n\

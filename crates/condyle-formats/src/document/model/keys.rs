@@ -2,10 +2,24 @@
 
 use crate::document::function::{FUNCTION, SEVERAL};
 use crate::document::head::HEAD;
+use crate::document::template::TEMPLATE;
 
 /// The keys at the top of a document, beside those of its head.
-pub(super) const TOP: &[&str] =
-    &["up", "mirror", "segment", "joint", "joint_set", "marker", "closure", "posture", "size"];
+pub(super) const TOP: &[&str] = &[
+    "up",
+    "mirror",
+    "segment",
+    "joint",
+    "joint_set",
+    "marker",
+    "closure",
+    "posture",
+    "size",
+    "template",
+];
+/// Those of them that a template may hold.
+pub(super) const REPEATED: &[&str] =
+    &["segment", "joint", "joint_set", "marker", "closure", "posture", "size"];
 pub(super) const MIRROR: &[&str] = &["plane", "from", "to"];
 pub(super) const SEGMENT: &[&str] = &[
     "parent",
@@ -126,9 +140,11 @@ pub(super) const COMPONENTS: &[(&str, &[&str])] = &[
 #[must_use]
 pub fn keys() -> Vec<(String, Vec<&'static str>)> {
     let top = [HEAD, TOP].concat();
-    let plain: [(&str, &[&'static str]); 18] = [
+    let template = [TEMPLATE, REPEATED].concat();
+    let plain: [(&str, &[&'static str]); 19] = [
         ("model", &top),
         ("mirror", MIRROR),
+        ("template", &template),
         ("segment", SEGMENT),
         ("joint", JOINT),
         ("joint_set", JOINT_SET),

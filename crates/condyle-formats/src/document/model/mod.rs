@@ -13,6 +13,7 @@
 //! size.G     = segments (that are scaled by one factor)
 //! closure.L  = points (and distance), frames, or coupling
 //! posture.P  = sum (coordinates with factors), rest, stiffness, source
+//! template.T = parameters, defaults, instances, and any of the tables above to repeat
 //! port       = "name" in the same joint set, "set.name" in another, ".2" for a second output
 //! ```
 //!
@@ -43,12 +44,13 @@ use condyle_diagnostics::{Error, Read};
 use condyle_model::Model;
 use condyle_model::component::Registry;
 
-const FORM: Form = Form { kind: Kind::Model, keys: keys::TOP, own: &["up"] };
+const FORM: Form =
+    Form { kind: Kind::Model, keys: keys::TOP, own: &["up"], repeated: keys::REPEATED };
 
 /// A model document: the model, and the text that describes it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Document {
-    /// The model, with includes, constants and the mirrored side resolved.
+    /// The model, with includes, constants, templates and the mirrored side resolved.
     pub model: Model,
     /// The text, comments and all. Saving a document writes this.
     pub text: String,

@@ -44,8 +44,8 @@ pub(super) fn build(draft: Draft, texts: &mut Texts) -> Option<Model> {
     match builder.build_with_warnings() {
         Ok(Read { value: model, warnings }) => {
             for warning in warnings.into_iter().filter(|w| w.code != AXIS_LENGTH).take(100) {
-                let said = located(texts, &places, warning);
-                texts.warn(said);
+                let (spot, said) = located(texts, &places, warning);
+                texts.warn(spot, said);
             }
             let whole = Spot::default();
             if factors(&model) > MOST_FACTORS {
@@ -70,8 +70,8 @@ pub(super) fn build(draft: Draft, texts: &mut Texts) -> Option<Model> {
         Err(findings) => {
             let errors = findings.into_diagnostics();
             for error in errors.into_iter().filter(|e| e.severity == Severity::Error).take(100) {
-                let said = located(texts, &places, error);
-                texts.push(said);
+                let (spot, said) = located(texts, &places, error);
+                texts.push(spot, said);
             }
             None
         }
@@ -79,10 +79,15 @@ pub(super) fn build(draft: Draft, texts: &mut Texts) -> Option<Model> {
 }
 
 /// A diagnostic of the builder, placed at the table of its first subject.
-fn located(texts: &Texts, places: &HashMap<Subject, Spot>, found: Diagnostic) -> Diagnostic {
+fn located(
+    texts: &Texts,
+    places: &HashMap<Subject, Spot>,
+    found: Diagnostic,
+) -> (Spot, Diagnostic) {
     let spot = found.subjects.first().and_then(|subject| places.get(subject)).copied();
-    let said = texts.said(spot.unwrap_or_default(), found.severity, found.code, found.message);
-    said.about_all(found.subjects).with_help(found.help)
+    let spot = spot.unwrap_or_default();
+    let said = texts.said(spot, found.severity, found.code, found.message);
+    (spot, said.about_all(found.subjects).with_help(found.help))
 }
 
 /// The number of factors of all products, expanded.

@@ -55,7 +55,7 @@ impl ModelReader<'_> {
             }
             _ => {}
         }
-        for family in ["segment", "joint", "joint_set", "marker", "closure", "posture", "size"] {
+        for &family in keys::REPEATED {
             let Some(node) = top.get(family) else { continue };
             for entry in self.entries(node, family) {
                 match family {
