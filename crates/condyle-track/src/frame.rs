@@ -17,8 +17,6 @@ const ALIKE: f64 = 1e-9;
 /// only where that lowers F + P by this share.
 pub(crate) const TURN: f64 = 0.3;
 const SWITCH: f64 = 1e-3;
-/// The tolerance of descents that are only gone on from.
-const ROUGH: f64 = 1e-3;
 /// How many first guesses such a frame gets.
 const RESCUE_GUESSES: usize = 2;
 
@@ -56,21 +54,7 @@ impl Tracker {
         answer: &mut FrameAnswer,
     ) {
         scratch.solver.forget();
-        self.descend(scratch, seen, frame, self.rules.tolerance, answer);
-    }
-
-    /// A frame from one start, near enough to judge it and to go on from.
-    pub(crate) fn solve_roughly(
-        &self,
-        scratch: &mut Scratch,
-        seen: &[Option<[f64; 3]>],
-        frame: usize,
-        start: &[f64],
-    ) -> FrameAnswer {
-        let mut answer = FrameAnswer::start(start);
-        scratch.solver.forget();
-        self.descend(scratch, seen, frame, self.rules.tolerance.max(ROUGH), &mut answer);
-        answer
+        self.descend(scratch, seen, frame, answer);
     }
 
     /// The posture of a frame about which nothing is known, from at most so many first guesses.
@@ -221,7 +205,7 @@ impl Tracker {
         gap: bool,
     ) {
         let before = if answer.status.is_solved() { answer.minimised() } else { f64::INFINITY };
-        self.descend(scratch, seen, frame, self.rules.tolerance, answer);
+        self.descend(scratch, seen, frame, answer);
         self.cross_bounds(scratch, seen, frame, answer);
         let jumped = answer.minimised() > JUMP * before + JUMP_FLOOR;
         let lost = matches!(answer.status, FrameStatus::Uncertain | FrameStatus::Infeasible);
@@ -265,7 +249,6 @@ impl Tracker {
         scratch: &mut Scratch,
         seen: &[Option<[f64; 3]>],
         index: usize,
-        tolerance: f64,
         answer: &mut FrameAnswer,
     ) {
         let Scratch { solver, buffers } = scratch;
@@ -277,6 +260,7 @@ impl Tracker {
         let some_seen = frame.buffers.total_weight > 0.0;
         (answer.status, answer.iterations) = (FrameStatus::NoMarkers, 0);
         if some_seen || self.targets.stand_without_markers() {
+            let tolerance = self.rules.tolerance;
             let stopping = least_squares::Stopping { tolerance, ..Default::default() };
             let summary = solver.minimise(&mut frame, &stopping);
             answer.iterations = summary.iterations;

@@ -273,7 +273,7 @@ impl Tracker {
         if self.markers.placed.iter().zip(&now).filter(|&pair| counts(pair)).count() >= TURNED_BY {
             let mut best: Option<FrameAnswer> = None;
             for guess in self.first_guesses(scratch, &now, TURNED_BY) {
-                let one = self.solve_roughly(scratch, &now, frame, &guess);
+                let one = self.solve_frame(scratch, &now, frame, &guess);
                 if best.as_ref().is_none_or(|best| better(&one, best)) {
                     best = Some(one);
                 }
@@ -285,14 +285,14 @@ impl Tracker {
             now = shown(hidden);
             let groups = &self.limbs[limb].direct;
             let own = |group: Option<usize>| group.is_some_and(|g| groups.contains(&g));
-            let mut best = self.solve_roughly(scratch, &now, frame, &answer.coordinates);
+            let mut best = self.solve_frame(scratch, &now, frame, &answer.coordinates);
             let Some(off) = self.mean(scratch, &now, &best.coordinates, own) else { continue };
             let all = self.mean(scratch, &now, &best.coordinates, |_| true).unwrap_or(off);
             let others = self.mean(scratch, &before, &answer.coordinates, |_| true).unwrap_or(0.0);
             if off.max(all) > FITS * others + FITS_FLOOR {
                 let guesses = self.best_turned(scratch, &now, limb, groups, &answer.coordinates);
                 for guess in guesses {
-                    let one = self.solve_roughly(scratch, &now, frame, &guess);
+                    let one = self.solve_frame(scratch, &now, frame, &guess);
                     if better(&one, &best) {
                         best = one;
                     }
