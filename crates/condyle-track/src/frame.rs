@@ -104,6 +104,20 @@ impl Tracker {
         best.unwrap_or_else(|| self.solve_frame(scratch, seen, frame, &self.defaults))
     }
 
+    /// A frame among others from at most so many first guesses: as [`Tracker::solve_first`], but not built
+    /// anew from the root, as its neighbours say as much.
+    pub(crate) fn solve_anew(
+        &self,
+        scratch: &mut Scratch,
+        seen: &[Option<[f64; 3]>],
+        frame: usize,
+        guesses: usize,
+    ) -> FrameAnswer {
+        let mut answer = self.solve_guesses(scratch, seen, frame, guesses);
+        self.try_limbs(scratch, seen, frame, &mut answer);
+        answer
+    }
+
     /// Tries each limb at other quarter turns, then what lies beyond bounds.
     fn try_limbs(
         &self,
@@ -210,8 +224,7 @@ impl Tracker {
         let jumped = answer.minimised() > JUMP * before + JUMP_FLOOR;
         let lost = matches!(answer.status, FrameStatus::Uncertain | FrameStatus::Infeasible);
         if jumped || lost || gap {
-            let mut again = self.solve_guesses(scratch, seen, frame, RESCUE_GUESSES);
-            self.try_limbs(scratch, seen, frame, &mut again);
+            let mut again = self.solve_anew(scratch, seen, frame, RESCUE_GUESSES);
             self.branches.bring_near(&mut again.coordinates, &answer.coordinates, &self.stored);
             let all = answer.iterations + again.iterations;
             if self.replaces(&again, answer) {

@@ -229,7 +229,7 @@ fn review(
         }
         looked.push(frame);
         recorded.positions(frame, &mut seen);
-        let mut again = tracker.solve_first(scratch, &seen, frame, FIRST_GUESSES);
+        let mut again = tracker.solve_anew(scratch, &seen, frame, FIRST_GUESSES);
         let numbers = &mut again.coordinates;
         tracker.branches.bring_near(numbers, &answers[frame].coordinates, &tracker.stored);
         if !tracker.replaces(&again, &answers[frame]) {
