@@ -71,10 +71,7 @@ impl Tracker {
     ) -> FrameAnswer {
         let mut best = self.solve_guesses(scratch, seen, frame, guesses);
         if let Some(start) = self.outward(scratch, seen, frame, &best) {
-            let mut answer = self.solve_frame(scratch, seen, frame, &start.coordinates);
-            if self.unwind(&mut answer.coordinates) {
-                self.solve_into(scratch, seen, frame, &mut answer);
-            }
+            let answer = self.solve_wound(scratch, seen, frame, &start.coordinates);
             if self.preferred(&answer, &best) {
                 best = answer;
             }
@@ -93,15 +90,27 @@ impl Tracker {
     ) -> FrameAnswer {
         let mut best: Option<FrameAnswer> = None;
         for guess in self.first_guesses(scratch, seen, guesses) {
-            let mut answer = self.solve_frame(scratch, seen, frame, &guess);
-            if self.unwind(&mut answer.coordinates) {
-                self.solve_into(scratch, seen, frame, &mut answer);
-            }
+            let answer = self.solve_wound(scratch, seen, frame, &guess);
             if best.as_ref().is_none_or(|best| self.preferred(&answer, best)) {
                 best = Some(answer);
             }
         }
         best.unwrap_or_else(|| self.solve_frame(scratch, seen, frame, &self.defaults))
+    }
+
+    /// A descent from afar, wound back by whole turns towards the defaults and solved again from there.
+    fn solve_wound(
+        &self,
+        scratch: &mut Scratch,
+        seen: &[Option<[f64; 3]>],
+        frame: usize,
+        start: &[f64],
+    ) -> FrameAnswer {
+        let mut answer = self.solve_frame(scratch, seen, frame, start);
+        if self.unwind(&mut answer.coordinates) {
+            self.solve_into(scratch, seen, frame, &mut answer);
+        }
+        answer
     }
 
     /// A frame among others from at most so many first guesses: as [`Tracker::solve_first`], but not built
@@ -142,10 +151,7 @@ impl Tracker {
         best: &mut FrameAnswer,
     ) {
         for guess in self.limb_guesses(scratch, seen, limb, best) {
-            let mut answer = self.solve_frame(scratch, seen, frame, &guess);
-            if self.unwind(&mut answer.coordinates) {
-                self.solve_into(scratch, seen, frame, &mut answer);
-            }
+            let mut answer = self.solve_wound(scratch, seen, frame, &guess);
             answer.iterations += best.iterations;
             if self.replaces(&answer, best) {
                 *best = answer;
