@@ -5,6 +5,8 @@ use std::io::Write;
 use std::path::Path;
 
 /// Writes bytes to a file by way of a temporary one beside it, or to standard output for `-`.
+///
+/// A link stays a link, and what is no file, such as `/dev/null` or a pipe, is written to and not replaced.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     if path == Path::new("-") {
         return print(bytes);
@@ -13,15 +15,25 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     if let Some(folder) = path.parent().filter(|f| !f.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).map_err(fail)?;
     }
-    let mut name = path.file_name().unwrap_or_default().to_owned();
+    let linked = path.is_symlink().then(|| std::fs::canonicalize(path).ok()).flatten();
+    let place = linked.as_deref().unwrap_or(path);
+    if !is_replaceable(place) {
+        return std::fs::write(place, bytes).map_err(fail);
+    }
+    let mut name = place.file_name().unwrap_or_default().to_owned();
     name.push(format!(".{}.part", std::process::id()));
-    let temporary = path.with_file_name(name);
+    let temporary = place.with_file_name(name);
     let written =
-        std::fs::write(&temporary, bytes).and_then(|()| std::fs::rename(&temporary, path));
+        std::fs::write(&temporary, bytes).and_then(|()| std::fs::rename(&temporary, place));
     written.map_err(|error| {
         let _ = std::fs::remove_file(&temporary);
         fail(error)
     })
+}
+
+/// Whether a place is a file or free.
+fn is_replaceable(place: &Path) -> bool {
+    std::fs::symlink_metadata(place).map_or(true, |known| known.is_file())
 }
 
 /// Writes to standard output; a closed pipe is no error.
@@ -79,4 +91,30 @@ pub(crate) fn wrapped(head: &str, names: &[&str]) -> String {
     }
     text.push('\n');
     text
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::symlink;
+
+    #[test]
+    fn links_and_devices_are_written_to_and_stay() {
+        let folder = std::env::temp_dir().join(format!("condyle-output-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let [file, link, loose] = ["motion.mot", "link.mot", "loose"].map(|name| folder.join(name));
+        std::fs::write(&file, "old").unwrap();
+        symlink(&file, &link).unwrap();
+        symlink(folder.join("nowhere"), &loose).unwrap();
+        for place in [&link, &loose] {
+            write(place, b"new").unwrap();
+            assert!(place.is_symlink(), "{}", place.display());
+        }
+        assert_eq!(std::fs::read(&file).unwrap(), b"new");
+        assert_eq!(std::fs::read(folder.join("nowhere")).unwrap(), b"new");
+        // Not written to here: if this were wrong, the machine would lose it.
+        assert!(!is_replaceable(Path::new("/dev/null")));
+        assert!(is_replaceable(&file) && is_replaceable(&folder.join("new.mot")));
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
 }
