@@ -247,9 +247,9 @@ impl Tracker {
         found
     }
 
-    /// A posture that is built from the root outwards, to begin a descent with, unless `start` fits closely: first the markers that no
-    /// limb moves, from `start` if there are too few, then those of one limb after another, each at the best of
-    /// its quarter turns. Markers farther out cannot lead an inner joint astray.
+    /// A posture that is built from the root outwards, to begin a descent with, unless `start` fits closely:
+    /// first the markers that no limb moves, from `start` if there are too few, then those of one limb after
+    /// another, each at the best of its quarter turns. Markers farther out cannot lead an inner joint astray.
     pub(crate) fn outward(
         &self,
         scratch: &mut Scratch,

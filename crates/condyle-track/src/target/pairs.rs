@@ -73,8 +73,8 @@ impl Pairs {
         pairs
     }
 
-    /// Adds `scale` times gradient and Hessian; where these should be curved, what Gauss and Newton leave out as well: ω of
-    /// the earlier motion times the lever of the later one.
+    /// Adds `scale` times gradient and Hessian; where these should be curved, what Gauss and Newton leave out
+    /// as well: ω of the earlier motion times the lever of the later one.
     ///
     /// `moments` are those of the groups, `summed` a buffer with a place for each set.
     ///
