@@ -4,8 +4,8 @@
 use condyle_math::function::{Curve, Function, SimmSpline};
 use condyle_math::{Quat, Vec3};
 use condyle_model::{
-    Component, CoordinateId, CoordinateKind, JointSetId, Model, ModelBuilder, Range, SegmentId,
-    Signal, component,
+    CoordinateId, CoordinateKind, JointSetId, Law, Model, ModelBuilder, Range, SegmentId, Signal,
+    component,
 };
 
 const RIGHT: f64 = 1.0;
@@ -201,8 +201,8 @@ impl Body {
         self.b.follow(beta, Signal::Coordinate(flexion));
         let functions =
             [3.0, 6.0].map(|factor| Function { factor, curve: Curve::SimmSpline(spline()) });
-        let map = component::Map { input: beta.into(), functions: functions.to_vec() };
-        let forward = self.b.component(set, "glide", Component::Map(map));
+        let map = component::Map { functions: functions.to_vec() };
+        let forward = self.b.component(set, "glide", Law::Map(map), vec![beta.into()]);
         let up = match forward {
             Signal::Output(id, _) => Signal::Output(id, 1),
             coordinate => coordinate,

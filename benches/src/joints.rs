@@ -4,9 +4,9 @@ use crate::random::Random;
 use condyle_math::function::{Function, SimmSpline};
 use condyle_math::{Affine, Quat, Scalar, Vec3};
 use condyle_model::component::{
-    Along, Centre, Compensate, Component, ConstantCurvature, Contact, ContactPair, Curve, Depend,
-    Ellipsoid, Gliding, Heading, JointCone, Law, Pivot, Registry, Scale, Shear, Signal,
-    SurfaceAxis, Swinging,
+    Along, Centre, ConstantCurvature, Contact, ContactPair, Curve, Depend, Ellipsoid, Gliding,
+    Heading, JointCone, Law, MotionLaw, Pivot, Registry, Scale, Shear, Signal, SurfaceAxis,
+    Swinging,
 };
 use condyle_model::{
     Cone, ConePoint, CoordinateKind, JointSetId, Model, ModelBuilder, Projection, Range, SegmentId,
@@ -49,7 +49,7 @@ fn slides(b: &mut ModelBuilder, set: JointSetId, axes: &[Vec3]) -> Vec<Signal> {
 
 fn scale(b: &mut ModelBuilder, set: JointSetId, along: Along) -> Signal {
     let factor = b.coordinate(set, "factor", CoordinateKind::Scale).into();
-    b.component(set, "scale", Component::Scale(Scale { factor, along }))
+    b.component(set, "scale", Law::Scale(Scale { along }), vec![factor])
 }
 
 fn path() -> Box<[SimmSpline; 3]> {
@@ -61,14 +61,14 @@ fn path() -> Box<[SimmSpline; 3]> {
 
 fn curve(b: &mut ModelBuilder, set: JointSetId, heading: Option<Heading>) -> Signal {
     let parameter = angle(b, set, "parameter");
-    let curve = Curve { parameter, path: path(), heading };
-    b.component(set, "curve", Component::Curve(curve))
+    let curve = Law::Curve(Curve { path: path(), heading });
+    b.component(set, "curve", curve, vec![parameter])
 }
 
 fn pivot(b: &mut ModelBuilder, set: JointSetId, centre: Centre) -> Signal {
     let angle = angle(b, set, "angle");
-    let pivot = Pivot::new(angle, Vec3::Z, centre).unwrap_or_else(|e| panic!("an axis: {e}"));
-    b.pivot(set, "pivot", pivot)
+    let pivot = Pivot::new(Vec3::Z, centre).unwrap_or_else(|e| panic!("an axis: {e}"));
+    b.pivot(set, "pivot", angle, pivot)
 }
 
 /// A cone of 14 control points, as in the source's figure 5, with bounds of twist.
@@ -88,9 +88,8 @@ pub fn cone(rest: Vec3, half: f64) -> Cone {
 fn ball_in_cone(b: &mut ModelBuilder, set: JointSetId, half: f64) -> Signal {
     let angles = ["first", "second", "third"].map(|name| angle(b, set, name));
     let axes = [Vec3::Z, Vec3::X, Vec3::Y];
-    let of = Swinging::Angles(angles, axes);
-    let cone = JointCone { of, cone: cone(-Vec3::Y, half) };
-    let Signal::Output(id, _) = b.component(set, "cone", Component::Cone(cone)) else {
+    let cone = Law::Cone(JointCone { of: Swinging::Angles(axes), cone: cone(-Vec3::Y, half) });
+    let Signal::Output(id, _) = b.component(set, "cone", cone, angles.to_vec()) else {
         unreachable!("a component has outputs")
     };
     let turns = (0..3)
@@ -122,7 +121,7 @@ pub fn gliding() -> Gliding {
 #[derive(Debug)]
 struct Cam;
 
-impl Law for Cam {
+impl MotionLaw for Cam {
     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
         let (s, c) = inputs[0].sin_cos();
         let turn = condyle_math::Mat3::identity().rotated_z((s, c));
@@ -179,8 +178,8 @@ pub fn kinds() -> Vec<Kind> {
         kind("scale, volume kept", true, |b, set, _| scale(b, set, Along::Volume(Vec3::X))),
         kind("shear", true, |b, set, _| {
             let amount = angle(b, set, "amount");
-            let shear = Shear { amount, along: Vec3::X, across: Vec3::Y };
-            b.component(set, "shear", Component::Shear(shear))
+            let shear = Law::Shear(Shear { along: Vec3::X, across: Vec3::Y });
+            b.component(set, "shear", shear, vec![amount])
         }),
         kind("curve", false, |b, set, _| curve(b, set, None)),
         kind("curve, turning", false, |b, set, _| {
@@ -197,46 +196,45 @@ pub fn kinds() -> Vec<Kind> {
         kind("ellipsoid", false, |b, set, _| {
             let angles = ["first", "second", "third"].map(|name| angle(b, set, name));
             let (radii, axis) = (Vec3::new(0.07, 0.15, 0.07), SurfaceAxis::Normal);
-            let glide = Ellipsoid { angles, radii, axis };
-            b.component(set, "ellipsoid", Component::Ellipsoid(glide))
+            let glide = Law::Ellipsoid(Ellipsoid { radii, axis });
+            b.component(set, "ellipsoid", glide, angles.to_vec())
         }),
         kind("constant curvature", false, |b, set, _| {
             let angles = ["first", "second", "third"].map(|name| angle(b, set, name));
-            let column = ConstantCurvature { angles, neutral: [0.1, 0.2, 0.0], length: 0.2 };
-            b.constant_curvature(set, "column", column)
+            let column = ConstantCurvature { neutral: [0.1, 0.2, 0.0], length: 0.2 };
+            b.constant_curvature(set, "column", angles, column)
         }),
         kind("depend + hinge", false, |b, set, _| {
             let (passive, driver) = (angle(b, set, "passive"), angle(b, set, "driver"));
             let lower = Some(Function::linear(0.3, -0.4));
-            let held = b.depend(set, "held", Depend { passive, driver, lower, upper: None });
+            let held = b.depend(set, "held", passive, driver, Depend { lower, upper: None });
             b.rotate(set, "turn", held, Vec3::Z)
         }),
         kind("cone + three axes, inside", false, |b, set, _| ball_in_cone(b, set, 2.2)),
         kind("cone + three axes, outside", false, |b, set, _| ball_in_cone(b, set, 0.15)),
         kind("compensate + hinge", false, |b, set, segment| {
-            let ancestors = b.segment_at(segment.index() - 1).into_iter().collect();
-            let undo = Compensate { segment, ancestors, weight: 1.0 };
-            let undo = b.compensate(set, "undo", undo);
+            let above: Vec<SegmentId> = b.segment_at(segment.index() - 1).into_iter().collect();
+            let undo = b.compensate(set, "undo", segment, &above, 1.0);
             let turn = turns(b, set, &[Vec3::Z])[0];
             b.product(set, "product", vec![undo, turn])
         }),
         kind("contact + hinge", false, |b, set, segment| {
             let before = turns(b, set, &[Vec3::Z])[0];
-            let drivers = vec![angle(b, set, "lift"), angle(b, set, "turn")];
+            let [lift, turn] = ["lift", "turn"].map(|name| angle(b, set, name));
             // The segment before this one carries the ribs.
             let surface = b.segment_at(segment.index() - 1).unwrap_or(segment);
-            let contact =
-                Contact { segment, surface, before: Some(before), drivers, law: gliding() };
-            let glide = b.component(set, "glide", Component::Contact(contact));
+            let contact = Law::Contact(Contact { before: true, law: gliding() });
+            let inputs = vec![segment.into(), surface.into(), before, lift, turn];
+            let glide = b.component(set, "glide", contact, inputs);
             b.product(set, "product", vec![before, glide])
         }),
         kind("a user's law", false, |b, set, _| {
             let inputs = vec![angle(b, set, "angle")];
             let mut registry = Registry::default();
             registry.register("cam", &["angle"], |_| Ok(Cam));
-            let cam = registry.make("cam", Default::default(), inputs);
+            let cam = registry.make("cam", Default::default());
             let cam = cam.unwrap_or_else(|e| panic!("registered: {e}"));
-            b.component(set, "cam", Component::Custom(cam))
+            b.component(set, "cam", Law::Custom(cam), inputs)
         }),
     ]
 }

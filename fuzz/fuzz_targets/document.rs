@@ -4,7 +4,7 @@
 
 use condyle_formats::document::{Kind, kind, read_with, render, write};
 use condyle_math::{Affine, Mat3, Scalar, Vec3};
-use condyle_model::component::{Law, Registry};
+use condyle_model::component::{MotionLaw, Registry};
 use condyle_model::{Mode, Pose, Program};
 use libfuzzer_sys::fuzz_target;
 
@@ -12,7 +12,7 @@ use libfuzzer_sys::fuzz_target;
 #[derive(Debug)]
 struct Cam(f64);
 
-impl Law for Cam {
+impl MotionLaw for Cam {
     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
         let (s, c) = inputs[0].sin_cos();
         let turn = Mat3::identity().rotated_z((s, c));

@@ -115,9 +115,9 @@ fn chain(subject: &Inspected<'_>, id: CoordinateId, source: Signal) -> Option<Di
                 open = subject.model.coordinate(leader).follows.into_iter().collect();
             }
             Signal::Output(component, _) => {
-                let component = &subject.model.components()[component.index()].component;
-                open.extend(component.inputs().into_iter().map(|(_, _, source)| source));
+                open.extend(subject.model.components()[component.index()].values());
             }
+            Signal::Segment(_) => {}
         }
     }
     if path.len() < 3 {

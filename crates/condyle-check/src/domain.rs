@@ -6,7 +6,7 @@
 use super::{Inspected, amount, finding};
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_math::function::Function;
-use condyle_model::component::{Component, Signal};
+use condyle_model::component::{Law, Signal};
 use condyle_model::{CoordinateId, CoordinateKind};
 use std::collections::BTreeMap;
 
@@ -32,14 +32,14 @@ struct Beyond {
 /// One finding for each coordinate and side of its range, with all functions that are too short.
 pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     let mut found: BTreeMap<(CoordinateId, bool), Vec<Beyond>> = BTreeMap::new();
-    for (index, named) in subject.model.components().iter().enumerate() {
-        let Component::Map(map) = &named.component else { continue };
+    for (index, component) in subject.model.components().iter().enumerate() {
+        let Law::Map(map) = &component.law else { continue };
         if !map.functions.iter().any(|f| f.domain().is_some() && !is_flat(f)) {
             continue;
         }
-        let Some(taken) = subject.reach.taken(map.input) else { continue };
+        let Some(taken) = subject.reach.taken(component.inputs[0]) else { continue };
         let ([leader], Some(extremes)) = (&taken.leaders[..], taken.extremes()) else { continue };
-        let set = &subject.model.joint_sets()[named.joint_set.index()].name;
+        let set = &subject.model.joint_sets()[component.joint_set.index()].name;
         for (output, function) in map.functions.iter().enumerate() {
             let Some((first, last)) = function.domain().filter(|_| !is_flat(function)) else {
                 continue;
@@ -72,11 +72,14 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
 /// What an output is used as: an angle, a distance, the value of a coordinate, or something else.
 fn made(subject: &Inspected<'_>, component: usize, output: usize) -> CoordinateKind {
     let is_it = |source: Signal| matches!(source, Signal::Output(id, n) if (id.index(), n as usize) == (component, output));
-    for named in subject.model.components() {
-        match &named.component {
-            Component::Rotate(c) if is_it(c.angle) => return CoordinateKind::Rotation,
-            Component::Translate(c) if is_it(c.distance) => return CoordinateKind::Translation,
-            _ => {}
+    for component in subject.model.components() {
+        let kind = match component.law {
+            Law::Rotate(_) => CoordinateKind::Rotation,
+            Law::Translate(_) => CoordinateKind::Translation,
+            _ => continue,
+        };
+        if component.values().any(is_it) {
+            return kind;
         }
     }
     let mut coordinates = subject.model.coordinates().iter();

@@ -3,7 +3,7 @@
 use super::{Inspected, amount, finding, length, real_range};
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_model::CoordinateKind;
-use condyle_model::component::{Component, JointCone, Signal, Swinging};
+use condyle_model::component::{Component, JointCone, Law, Signal, Swinging};
 
 /// A posture within this distance, in radians, of a discontinuity of the projection is reported:
 /// half a degree.
@@ -17,9 +17,9 @@ const TOUCHING: f64 = 1e-5;
 
 /// Cones whose projection jumps inside the declared ranges, contacts that do not touch by default.
 pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
-    for named in subject.model.components() {
-        if let Component::Cone(cone) = &named.component {
-            findings.extend(jump(subject, &named.name, cone));
+    for component in subject.model.components() {
+        if let Law::Cone(cone) = &component.law {
+            findings.extend(jump(subject, component, cone));
         }
     }
     for (number, id) in subject.program.contacts().enumerate() {
@@ -43,14 +43,13 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
 }
 
 /// The posture inside the declared ranges that is nearest to a discontinuity of the projection.
-fn jump(subject: &Inspected<'_>, name: &str, cone: &JointCone) -> Option<Diagnostic> {
-    let sources: &[Signal] = match &cone.of {
-        Swinging::Angles(sources, _) => sources,
-        Swinging::Directions(sources, _) => sources,
-        Swinging::Orientation(_) => return None,
-    };
+fn jump(subject: &Inspected<'_>, component: &Component, cone: &JointCone) -> Option<Diagnostic> {
+    if let Swinging::Orientation = cone.of {
+        return None;
+    }
+    let name = &component.name;
     let mut ranges = vec![];
-    for source in sources {
+    for source in &component.inputs {
         let Signal::Coordinate(id) = *source else { return None };
         ranges.push((id, real_range(subject.model, id)?));
     }

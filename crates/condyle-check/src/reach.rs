@@ -5,7 +5,7 @@
 //! leader the leader's value that causes it is known.
 
 use super::real_range;
-use condyle_model::component::{Component, Signal, Swinging};
+use condyle_model::component::{Law, Signal};
 use condyle_model::{CoordinateId, CoordinateKind, Model};
 use std::cell::Cell;
 use std::collections::HashMap;
@@ -54,19 +54,15 @@ impl Taken {
 fn reads(model: &Model, source: Signal) -> Vec<Signal> {
     match source {
         Signal::Coordinate(id) => model.coordinate(id).follows.into_iter().collect(),
-        Signal::Output(id, _) => {
-            let component = &model.components()[id.index()].component;
-            component.inputs().into_iter().map(|(_, _, source)| source).collect()
-        }
+        Signal::Output(id, _) => model.components()[id.index()].values().collect(),
+        Signal::Segment(_) => vec![],
     }
 }
 
 impl<'m> Reach<'m> {
     pub(super) fn new(model: &'m Model) -> Self {
         let mut wanted: Vec<Signal> = model.coordinate_ids().map(Signal::Coordinate).collect();
-        for named in model.components() {
-            wanted.extend(named.component.inputs().into_iter().map(|(_, _, source)| source));
-        }
+        wanted.extend(model.components().iter().flat_map(|component| component.values()));
         let mut reach = Self {
             model,
             order: vec![],
@@ -141,27 +137,25 @@ impl<'m> Reach<'m> {
                     None => leader(id),
                 },
                 Signal::Output(id, output) => {
-                    match &self.model.components()[id.index()].component {
-                        Component::Map(map) => map
+                    let component = &self.model.components()[id.index()];
+                    let input = |k: usize| component.inputs.get(k).map_or(f64::NAN, |&s| of(s));
+                    match &component.law {
+                        Law::Map(map) => map
                             .functions
                             .get(output as usize)
-                            .map_or(f64::NAN, |f| f.value_and_slope(of(map.input)).0),
-                        Component::Combine(combine) => {
-                            let inputs: Vec<f64> = combine.inputs.iter().map(|&s| of(s)).collect();
-                            combine.function.apply(&inputs)
+                            .map_or(f64::NAN, |f| f.value_and_slope(input(0)).0),
+                        Law::Combine(combine) => {
+                            combine.function.apply_to(component.inputs.iter().map(|&s| of(s)))
                         }
                         // In open mode a cone passes its angles: each of these is taken.
-                        Component::Cone(cone) => {
-                            let angles: &[Signal] = match &cone.of {
-                                Swinging::Angles(angles, _) => angles,
-                                Swinging::Directions(angles, _) => angles,
-                                Swinging::Orientation(_) => &[],
-                            };
-                            angles.get(output as usize).map_or(f64::NAN, |&angle| of(angle))
-                        }
+                        Law::Cone(_) => component
+                            .at("angles")
+                            .get(output as usize)
+                            .map_or(f64::NAN, |&angle| of(angle)),
                         _ => f64::NAN,
                     }
                 }
+                Signal::Segment(_) => f64::NAN,
             };
             values.insert(source, last);
         }
@@ -245,6 +239,7 @@ mod tests {
     use super::*;
     use condyle_math::Vec3;
     use condyle_model::component::JointCone;
+    use condyle_model::component::Swinging;
     use condyle_model::limit::{Cone, ConePoint, Projection};
     use condyle_model::{ModelBuilder, Range};
 
@@ -265,9 +260,9 @@ mod tests {
         let corner = |x: f64, z: f64| ConePoint { direction: Vec3::new(x, -1.0, z), twist: None };
         let corners = vec![corner(0.2, 0.2), corner(-0.2, 0.2), corner(0.0, -0.2)];
         let cone = Cone::new(-Vec3::Y, None, corners, 0, Projection::Nearest).unwrap();
-        let sources = [angles[0].into(), angles[1].into(), angles[2].into()];
-        let of = Swinging::Angles(sources, [Vec3::Z, Vec3::X, Vec3::Y]);
-        let held = b.component(set, "held", Component::Cone(JointCone { of, cone }));
+        let sources = angles.iter().map(|&angle| angle.into()).collect();
+        let of = Swinging::Angles([Vec3::Z, Vec3::X, Vec3::Y]);
+        let held = b.component(set, "held", Law::Cone(JointCone { of, cone }), sources);
         let Signal::Output(id, _) = held else { panic!("a component has outputs") };
         for output in 0..3 {
             b.rotate(set, "turn", Signal::Output(id, output), Vec3::X);

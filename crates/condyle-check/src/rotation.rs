@@ -3,7 +3,7 @@
 use super::{Inspected, finding};
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_math::{Mat3, Vec3};
-use condyle_model::component::{Component, Signal};
+use condyle_model::component::{Law, Signal};
 use std::f64::consts::PI;
 
 /// Axes at less than this angle, in degrees, are nearly parallel.
@@ -19,10 +19,10 @@ struct Turn {
 }
 
 pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
-    for named in subject.model.components() {
-        let Component::Product(product) = &named.component else { continue };
-        let set = &subject.model.joint_sets()[named.joint_set.index()].name;
-        let turns = turns(subject, &product.factors);
+    for component in subject.model.components() {
+        let Law::Product(_) = component.law else { continue };
+        let set = &subject.model.joint_sets()[component.joint_set.index()].name;
+        let turns = turns(subject, &component.inputs);
         for pair in turns.windows(2) {
             findings.extend(parallel(subject, set, &pair[0], &pair[1]));
         }
@@ -38,19 +38,21 @@ fn turns(subject: &Inspected<'_>, factors: &[Signal]) -> Vec<Turn> {
     let mut turns = vec![];
     for factor in factors {
         let Signal::Output(id, _) = factor else { continue };
-        match &subject.model.components()[id.index()].component {
-            Component::Place(place) => frame = frame * place.child_in_parent.linear,
-            Component::Rotate(turn) => {
-                if subject.reach.leaders(turn.angle).is_empty() {
-                    let angle = subject.reach.at_rest(turn.angle);
+        let component = &subject.model.components()[id.index()];
+        match &component.law {
+            Law::Place(place) => frame = frame * place.child_in_parent.linear,
+            Law::Rotate(turn) => {
+                let source = component.inputs[0];
+                if subject.reach.leaders(source).is_empty() {
+                    let angle = subject.reach.at_rest(source);
                     if angle.is_finite() {
                         frame = frame * Mat3::rotation_about(turn.axis, angle.sin_cos());
                     }
                 } else {
-                    turns.push(Turn { angle: turn.angle, axis: frame * turn.axis });
+                    turns.push(Turn { angle: source, axis: frame * turn.axis });
                 }
             }
-            Component::Translate(_) => {}
+            Law::Translate(_) => {}
             // After any other rotation the directions of the axes are unknown.
             _ => turns.clear(),
         }

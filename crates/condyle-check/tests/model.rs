@@ -4,9 +4,7 @@ use condyle_check as lint;
 use condyle_diagnostics::{Diagnostic, Severity};
 use condyle_math::function::{Function, PiecewiseLinear, SimmSpline};
 use condyle_math::{Affine, Vec3};
-use condyle_model::component::{
-    Component, Contact, ContactPair, Gliding, JointCone, Signal, Swinging,
-};
+use condyle_model::component::{Contact, ContactPair, Gliding, JointCone, Law, Signal, Swinging};
 use condyle_model::model::{Closure, Condition};
 use condyle_model::{Cone, ConePoint, Projection};
 use condyle_model::{CoordinateKind, Model, ModelBuilder, Range};
@@ -458,9 +456,8 @@ fn in_a_cone(reach: f64, dent: bool) -> ModelBuilder {
         .into_iter()
         .map(|(x, z): (f64, f64)| ConePoint { direction: Vec3::new(x, -1.4, z), twist: None });
     let cone = Cone::new(-Vec3::Y, None, points.collect(), 0, Projection::Nearest).unwrap();
-    let of = Swinging::Angles(angles, axes);
-    let Signal::Output(cone, _) = b.component(set, "cone", Component::Cone(JointCone { of, cone }))
-    else {
+    let cone = Law::Cone(JointCone { of: Swinging::Angles(axes), cone });
+    let Signal::Output(cone, _) = b.component(set, "cone", cone, angles.to_vec()) else {
         unreachable!("a component has outputs")
     };
     let turns = (0..3)
@@ -492,14 +489,8 @@ fn a_contact_that_floats() {
         let pair = ContactPair { first: Vec3::Y * 0.1, second: Vec3::Z * 0.1, at: [0.0; 2] };
         let law = Gliding::new(Affine::IDENTITY, Vec3::new(0.1, 0.1, 0.1), Vec3::Z, vec![pair]);
         let set = b.joint_set("glide");
-        let contact = Contact {
-            segment: scapula,
-            surface: thorax,
-            before: None,
-            drivers: vec![],
-            law: law.unwrap(),
-        };
-        let glide = b.component(set, "glide", Component::Contact(contact));
+        let contact = Law::Contact(Contact { before: false, law: law.unwrap() });
+        let glide = b.component(set, "glide", contact, vec![scapula.into(), thorax.into()]);
         b.output(set, scapula, glide);
         b
     };

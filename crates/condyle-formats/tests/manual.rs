@@ -5,7 +5,7 @@
 
 use condyle_formats::document::{self, render};
 use condyle_math::{Affine, Mat3, Scalar, Vec3};
-use condyle_model::component::{Law, Registry};
+use condyle_model::component::{MotionLaw, Registry};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ struct Cam {
     lift: f64,
 }
 
-impl Law for Cam {
+impl MotionLaw for Cam {
     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
         let (s, c) = inputs[0].sin_cos();
         let lift = (S::one() - c).scale(self.lift);

@@ -45,7 +45,7 @@ pub mod limit;
 pub mod model;
 mod position;
 
-pub use component::{Component, Signal};
+pub use component::{Component, Law, Signal};
 pub use evaluate::{Jacobian, Mode, Pose, Program, SizeMismatch};
 pub use limit::{Cone, ConeError, ConePoint, Legal, Projected, Projection, Range};
 pub use model::{

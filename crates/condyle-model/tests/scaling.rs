@@ -6,7 +6,7 @@ mod grow;
 
 use condyle_math::function::{Function, FunctionOfSeveral};
 use condyle_math::{Affine, Mat3, Vec3};
-use condyle_model::component::{Component, Signal};
+use condyle_model::component::{Component, Law, Signal};
 use condyle_model::model::Condition;
 use condyle_model::{
     Closure, CoordinateKind, Mode, Model, ModelBuilder, Pose, Program, Range, SegmentId,
@@ -30,14 +30,13 @@ fn root(model: &Model, id: SegmentId) -> SegmentId {
 /// Whether all lengths that move a bone are values of functions: distances that are coordinates
 /// belong to the caller, and the meaning of the numbers of a user's law is unknown.
 fn grows_whole(model: &Model) -> bool {
-    model.components().iter().all(|named| match &named.component {
-        Component::Custom(_) => false,
-        Component::Translate(c) => match c.distance {
-            Signal::Output(id, _) => matches!(
-                model.components()[id.index()].component,
-                Component::Map(_) | Component::Combine(_)
-            ),
-            Signal::Coordinate(_) => false,
+    model.components().iter().all(|component| match component.law {
+        Law::Custom(_) => false,
+        Law::Translate(_) => match component.inputs[0] {
+            Signal::Output(id, _) => {
+                matches!(model.components()[id.index()].law, Law::Map(_) | Law::Combine(_))
+            }
+            _ => false,
         },
         _ => true,
     })
@@ -45,11 +44,8 @@ fn grows_whole(model: &Model) -> bool {
 
 /// Whether a transform moves segments of which one hangs in the world: it then grows or not.
 fn shared_with_the_world(model: &Model) -> bool {
-    let readers: Vec<Vec<Signal>> = model
-        .components()
-        .iter()
-        .map(|c| c.component.inputs().into_iter().map(|(_, _, s)| s).collect())
-        .collect();
+    let readers: Vec<Vec<Signal>> =
+        model.components().iter().map(|c: &Component| c.values().collect()).collect();
     let reach = |start: Signal| {
         let (mut open, mut met) = (vec![start], vec![]);
         while let Some(source) = open.pop() {

@@ -2,7 +2,7 @@
 
 use condyle_math::function::{Curve, Function, PiecewiseLinear};
 use condyle_math::{Quat, Vec3};
-use condyle_model::component::{Compensate, Depend};
+use condyle_model::component::Depend;
 use condyle_model::{CoordinateKind, Mode, Model, ModelBuilder, Pose, Program, SegmentId};
 
 /// Thorax, clavicle, scapula and humerus, each with a hinge.
@@ -20,9 +20,7 @@ fn shoulder(weight: Option<f64>) -> (Model, [SegmentId; 4]) {
     b.place_joint(humerus, Vec3::new(0.0, -0.03, 0.02));
     let (set, _) = b.hinge("glenohumeral", humerus, "raise", Vec3::X);
     if let Some(weight) = weight {
-        let ancestors = vec![clavicle, scapula];
-        let compensate = Compensate { segment: humerus, ancestors, weight };
-        let undo = b.compensate(set, "hang", compensate);
+        let undo = b.compensate(set, "hang", humerus, &[clavicle, scapula], weight);
         let raise = b.coordinates().len() - 1;
         let angle = b.coordinate_at(raise).unwrap();
         let own = b.rotate(set, "own", angle, Vec3::X);
@@ -75,8 +73,7 @@ fn only_ancestors_can_be_compensated() {
     let mut b = ModelBuilder::new("wrong");
     let [a, c] = ["arm", "leg"].map(|name| b.segment(name, None));
     let set = b.joint_set("joint");
-    let undo =
-        b.compensate(set, "undo", Compensate { segment: a, ancestors: vec![c], weight: 1.0 });
+    let undo = b.compensate(set, "undo", a, &[c], 1.0);
     b.output(set, a, undo);
     let findings = b.build().unwrap_err();
     assert_eq!(findings[0].code, "model/not-an-ancestor");
@@ -99,13 +96,8 @@ fn a_lifted_arm_lifts_the_clavicle() {
     let set = b.joint_set("shoulder");
     let abduction = b.coordinate(set, "abduction", CoordinateKind::Rotation);
     let elevation = b.coordinate(set, "elevation", CoordinateKind::Rotation);
-    let bound = Depend {
-        passive: elevation.into(),
-        driver: abduction.into(),
-        lower: Some(lines(&table)),
-        upper: None,
-    };
-    let held = b.depend(set, "bound", bound);
+    let bound = Depend { lower: Some(lines(&table)), upper: None };
+    let held = b.depend(set, "bound", elevation, abduction, bound);
     let turn = b.rotate(set, "turn", held, Vec3::X);
     b.output(set, clavicle, turn);
     // The one-to-one form is a map of the same table.

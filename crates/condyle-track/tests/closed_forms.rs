@@ -165,14 +165,14 @@ fn a_quaternion_ball_turns_to_its_markers_from_any_start() {
 fn markers_below_a_scale_find_its_factor() {
     // Stretched along x by s; a segment that hangs at (1, 0) and is turned by t is stretched with it:
     // its point (x, y) is at (s·(1 + x cos t - y sin t), x sin t + y cos t).
-    use condyle_model::Component;
+    use condyle_model::Law;
     use condyle_model::component::{Along, Scale};
     let mut b = ModelBuilder::new("stretch");
     let bone = b.segment("bone", None);
     let set = b.joint_set("joint");
     let factor = b.coordinate(set, "factor", CoordinateKind::Scale);
-    let scale = Scale { factor: factor.into(), along: Along::Axis(Vec3::X) };
-    let motion = b.component(set, "stretch", Component::Scale(scale));
+    let scale = Law::Scale(Scale { along: Along::Axis(Vec3::X) });
+    let motion = b.component(set, "stretch", scale, vec![factor.into()]);
     b.output(set, bone, motion);
     let tip = b.segment("tip", Some(bone));
     b.place_joint(tip, Vec3::X);

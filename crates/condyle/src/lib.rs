@@ -155,13 +155,13 @@
 //! ```
 //! use condyle::formats::document;
 //! use condyle::math::{Affine, Scalar, Vec3};
-//! use condyle::model::component::{Law, Registry};
+//! use condyle::model::component::{MotionLaw, Registry};
 //! use condyle::{Mode, Pose, Program};
 //!
 //! /// A scapula that is lifted with the square of the arm's elevation.
 //! #[derive(Debug)]
 //! struct Lift(f64);
-//! impl Law for Lift {
+//! impl MotionLaw for Lift {
 //!     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
 //!         let height = inputs[0] * inputs[0] * S::from_f64(self.0);
 //!         Affine::from_translation(Vec3::new(S::zero(), height, S::zero()))
@@ -279,7 +279,7 @@ pub use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Subject}
 pub use condyle_formats as formats;
 pub use condyle_math as math;
 pub use condyle_model::{
-    self as model, Component, Coordinate, CoordinateId, CoordinateKind, Jacobian, Mode, Model,
+    self as model, Component, Coordinate, CoordinateId, CoordinateKind, Jacobian, Law, Mode, Model,
     ModelBuilder, Pose, Program, Range, SegmentId, Signal,
 };
 pub use condyle_motion::{

@@ -28,7 +28,7 @@ use crate::matching::match_markers;
 use crate::tracking::posture;
 use condyle_diagnostics::Diagnostic;
 use condyle_math::Vec3;
-use condyle_model::component::Component;
+use condyle_model::component::Law;
 use condyle_model::{Mode, Model, Pose, SegmentId};
 use condyle_motion::Recording;
 use condyle_track::{FrameAnswer, FrameStatus, MarkerTarget, Rules, Scratch, Targets, Tracker};
@@ -211,7 +211,7 @@ pub fn fit(
         warnings
             .push(said.with_help("one factor is found for the whole body; add tables [size.…]"));
     }
-    if model.components().iter().any(|c| matches!(c.component, Component::Custom(_))) {
+    if model.components().iter().any(|c| matches!(c.law, Law::Custom(_))) {
         let said = Diagnostic::warning("scale/custom", "laws of kind `custom` keep their lengths");
         warnings
             .push(said.with_help("only their author knows which of their parameters are lengths"));

@@ -6,7 +6,7 @@ use condyle_formats::opensim::model as osim;
 use condyle_math::function::{Curve, PiecewiseLinear};
 use condyle_math::{Affine, Vec3};
 use condyle_model::model::Condition;
-use condyle_model::{Closure, Component, Mode, Model, ModelBuilder, Range, UpAxis};
+use condyle_model::{Closure, Law, Mode, Model, ModelBuilder, Range, UpAxis};
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -31,10 +31,10 @@ fn same(a: &Model, b: &Model, stored: &[f64], what: &str) {
     }
     assert_eq!(a.components().len(), b.components().len(), "{what}");
     for (a, b) in a.components().iter().zip(b.components()) {
-        assert_eq!(a.component.kind(), b.component.kind(), "{what}");
+        assert_eq!(a.law.kind(), b.law.kind(), "{what}");
         // These are kept to the last number; others hold directions that are made of length 1.
-        if let Component::Cone(_) | Component::Custom(_) | Component::Curve(_) = a.component {
-            assert_eq!(a.component, b.component, "{what}: {}", a.name);
+        if let Law::Cone(_) | Law::Custom(_) | Law::Curve(_) = a.law {
+            assert_eq!((&a.law, &a.inputs), (&b.law, &b.inputs), "{what}: {}", a.name);
         }
     }
     for mode in [Mode::Open, Mode::Posed] {

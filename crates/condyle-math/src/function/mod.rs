@@ -72,6 +72,44 @@ impl Function {
         Curve::Constant(value).into()
     }
 
+    /// Makes it x ↦ `result`·f(x/`argument`): the same function where result and argument are
+    /// measured in other units, or on a body of another size.
+    ///
+    /// ```
+    /// use condyle_math::function::Function;
+    /// let mut glide = Function::linear(0.02, 0.005);
+    /// glide.stretch(2.0, 4.0);
+    /// assert_eq!(glide.value_and_slope(4.0), (0.05, 0.01));
+    /// ```
+    pub fn stretch(&mut self, result: f64, argument: f64) {
+        if result != 1.0 {
+            self.factor *= result;
+        }
+        if argument == 1.0 {
+            return;
+        }
+        match &mut self.curve {
+            Curve::Constant(_) => {}
+            Curve::Linear { slope, .. } => *slope /= argument,
+            Curve::Polynomial(p) => {
+                let mut power = 1.0;
+                let all = p.ascending().iter().map(|c| {
+                    let c = c / power;
+                    power *= argument;
+                    c
+                });
+                *p = Polynomial::from_ascending(all.collect());
+            }
+            Curve::PiecewiseLinear(p) => {
+                let (x, y) = p.knots().map(|(x, y)| (x * argument, y)).unzip();
+                if let Ok(wider) = PiecewiseLinear::new(x, y) {
+                    *p = wider;
+                }
+            }
+            Curve::SimmSpline(s) => s.stretch(1.0, argument),
+        }
+    }
+
     /// Value and derivative at `x`.
     ///
     /// ```

@@ -31,12 +31,26 @@ impl FunctionOfSeveral {
     /// count as 0.
     #[inline]
     pub fn apply<S: Scalar>(&self, x: &[S]) -> S {
+        self.apply_to(x.iter().copied())
+    }
+
+    /// [`FunctionOfSeveral::apply`] for arguments that do not lie together.
+    #[inline]
+    pub fn apply_to<S: Scalar>(&self, x: impl Iterator<Item = S>) -> S {
         match self {
             Self::Linear { slopes, intercept } => slopes
                 .iter()
                 .zip(x)
-                .fold(S::from_f64(*intercept), |sum, (&slope, &x)| sum + x.scale(slope)),
-            Self::Polynomial(p) => p.apply(x),
+                .fold(S::from_f64(*intercept), |sum, (&slope, x)| sum + x.scale(slope)),
+            Self::Polynomial(p) => {
+                let mut all = [S::zero(); MOST_VARIABLES];
+                let mut count = 0;
+                for (value, x) in all.iter_mut().zip(x) {
+                    *value = x;
+                    count += 1;
+                }
+                p.apply(&all[..count])
+            }
         }
     }
 
@@ -48,14 +62,18 @@ impl FunctionOfSeveral {
     /// assert_eq!(sum.slope(&[3.0, 4.0], 1), 2.0);
     /// ```
     pub fn slope(&self, x: &[f64], i: usize) -> f64 {
+        self.slope_at(x.iter().copied(), i)
+    }
+
+    /// [`FunctionOfSeveral::slope`] for arguments that do not lie together.
+    pub fn slope_at(&self, x: impl Iterator<Item = f64>, i: usize) -> f64 {
         match self {
             Self::Linear { slopes, .. } => slopes.get(i).copied().unwrap_or(0.0),
-            Self::Polynomial(p) => {
-                let mut seeded = [Dual::<1>::constant(0.0); MOST_VARIABLES];
-                for (k, (dual, &value)) in seeded.iter_mut().zip(x).enumerate() {
-                    *dual = Dual { value, partials: [f64::from(u8::from(k == i))] };
-                }
-                p.apply(&seeded[..x.len().min(MOST_VARIABLES)]).partials[0]
+            Self::Polynomial(_) => {
+                let seeded = x
+                    .enumerate()
+                    .map(|(k, value)| Dual { value, partials: [f64::from(u8::from(k == i))] });
+                self.apply_to(seeded).partials[0]
             }
         }
     }

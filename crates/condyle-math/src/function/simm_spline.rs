@@ -123,6 +123,14 @@ impl SimmSpline {
         self.x.iter().copied().zip(self.cubic.iter().map(|c| c[0]))
     }
 
+    /// Makes it x ↦ `result`·f(x/`argument`); unchanged where the knots would not increase.
+    pub fn stretch(&mut self, result: f64, argument: f64) {
+        let (x, y) = self.knots().map(|(x, y)| (x * argument, y * result)).unzip();
+        if let Ok(stretched) = Self::new(x, y) {
+            *self = stretched;
+        }
+    }
+
     /// First and last argument.
     pub fn domain(&self) -> (f64, f64) {
         (self.x[0], self.x[self.x.len() - 1])

@@ -1,14 +1,34 @@
 //! Several scalars to one: y = f(x₁, …, xₙ).
 
-use super::Signal;
+use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
+use condyle_math::Vec3;
 use condyle_math::function::FunctionOfSeveral;
 
 /// One scalar as a function of several: for example the flexion of a vertebra from the three angles
 /// of the trunk.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Combine {
-    /// The arguments, as many as the function takes.
-    pub inputs: Vec<Signal>,
-    /// The function.
+    /// The function, of as many arguments as there are inputs.
     pub function: FunctionOfSeveral,
+}
+
+impl Combine {
+    pub(crate) const KIND: Kind =
+        Kind { name: "combine", ports: &[Port::list("inputs", PortType::Scalar)] };
+}
+
+impl Contract for Combine {
+    fn outputs(&self) -> (PortType, usize) {
+        (PortType::Scalar, 1)
+    }
+
+    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+        vec![]
+    }
+
+    fn grow(&mut self, _: f64, _: &[f64]) {}
+
+    fn mirror(&mut self, _: Reflection) -> Result<Mirrored, String> {
+        Ok(Mirrored::default())
+    }
 }

@@ -17,16 +17,39 @@
 //!
 //! Discontinuous for a weight between 0 and 1, where a named motion reaches a half turn.
 
-use crate::position::SegmentId;
+use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
+use condyle_math::Vec3;
 
 /// The rotation that cancels those of named ancestors: for example an arm that keeps hanging while
 /// the shoulder shrugs.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// Its ports are the segment to whose joint the output applies, and the ancestors whose rotations are
+/// cancelled, of any joint sets.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Compensate {
-    /// The segment to whose joint the output applies.
-    pub segment: SegmentId,
-    /// The ancestors whose rotations are cancelled, of any joint sets.
-    pub ancestors: Vec<SegmentId>,
     /// The fraction of their rotations that is cancelled, from 0 to 1.
     pub weight: f64,
+}
+
+impl Compensate {
+    pub(crate) const KIND: Kind = Kind {
+        name: "compensate",
+        ports: &[Port::one("segment", PortType::Joint), Port::list("ancestors", PortType::Joint)],
+    };
+}
+
+impl Contract for Compensate {
+    fn outputs(&self) -> (PortType, usize) {
+        (PortType::Transform, 1)
+    }
+
+    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+        vec![]
+    }
+
+    fn grow(&mut self, _: f64, _: &[f64]) {}
+
+    fn mirror(&mut self, _: Reflection) -> Result<Mirrored, String> {
+        Ok(Mirrored::default())
+    }
 }

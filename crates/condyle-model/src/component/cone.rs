@@ -21,30 +21,30 @@
 //! Kinks: in posed mode at the boundary. The derivative of moved angles is taken as 0; solvers use
 //! open mode.
 
-use super::Signal;
-use crate::limit::Cone;
+use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
+use crate::limit::{Cone, ConePoint};
 use condyle_math::{Mat3, Quat, Scalar, Vec3};
 use std::f64::consts::TAU;
 
 /// A ball joint limited by a cone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointCone {
-    /// The scalars or the orientation that are limited.
+    /// What kind of numbers are limited.
     pub of: Swinging,
     /// The limit.
     pub cone: Cone,
 }
 
 /// The numbers that a [`JointCone`] limits.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Swinging {
     /// Three angles in radians and their axes, in the order of the product; axes are normalised
     /// when the model is built.
-    Angles([Signal; 3], [Vec3; 3]),
+    Angles([Vec3; 3]),
     /// Two angles in radians and their axes: the bone only swings.
-    Directions([Signal; 2], [Vec3; 2]),
+    Directions([Vec3; 2]),
     /// A unit quaternion.
-    Orientation(Signal),
+    Orientation,
 }
 
 /// One limit row of a cone: its value, and its derivative along each angle or tangent.
@@ -53,16 +53,16 @@ pub(crate) type ConeRow = (f64, [f64; 3]);
 impl JointCone {
     /// The number of limit rows.
     pub fn rows(&self) -> usize {
-        let twisting = !matches!(self.of, Swinging::Directions(..));
+        let twisting = !matches!(self.of, Swinging::Directions(_));
         if twisting && self.cone.twist_at_rest().is_some() { 3 } else { 1 }
     }
 
     /// The three axes, with the rest direction as third for two angles; `None` for an orientation.
     fn axes(&self) -> Option<[Vec3; 3]> {
         match &self.of {
-            Swinging::Angles(_, axes) => Some(*axes),
-            Swinging::Directions(_, [a, b]) => Some([*a, *b, self.cone.rest()]),
-            Swinging::Orientation(_) => None,
+            Swinging::Angles(axes) => Some(*axes),
+            Swinging::Directions([a, b]) => Some([*a, *b, self.cone.rest()]),
+            Swinging::Orientation => None,
         }
     }
 
@@ -73,15 +73,6 @@ impl JointCone {
             let (one, other) = (a.dot(b).abs(), c.dot(b).abs());
             if one > other || one.is_nan() { one } else { other }
         })
-    }
-
-    /// Normalises all axes.
-    pub(crate) fn normalise(&mut self) {
-        match &mut self.of {
-            Swinging::Angles(_, axes) => *axes = axes.map(Vec3::normalized),
-            Swinging::Directions(_, axes) => *axes = axes.map(Vec3::normalized),
-            Swinging::Orientation(_) => {}
-        }
     }
 
     /// The rotation of these numbers, and for each angle (or tangent of the orientation) the axis
@@ -108,7 +99,7 @@ impl JointCone {
     /// If there are fewer numbers than inputs.
     pub fn margin(&self, numbers: &[f64]) -> f64 {
         let rotation = self.turned(numbers);
-        if let Swinging::Directions(..) = self.of {
+        if let Swinging::Directions(_) = self.of {
             let direction = rotation * self.cone.rest();
             return match self.cone.contains(direction) {
                 true => f64::INFINITY,
@@ -129,7 +120,7 @@ impl JointCone {
     /// The legal numbers for the requested ones; `None` if those are legal.
     pub(crate) fn legal(&self, asked: &[f64]) -> Option<[f64; 4]> {
         let rotation = self.turned(asked);
-        if let Swinging::Directions(..) = self.of {
+        if let Swinging::Directions(_) = self.of {
             let direction = rotation * self.cone.rest();
             if self.cone.contains(direction) {
                 return None;
@@ -187,7 +178,7 @@ impl JointCone {
     ///
     /// δ = 2·vec(q*·q̇)/|q|², with q* the conjugate, so s·δ = 2·((w·s - s × v)·v̇ - (s·v)·ẇ)/|q|².
     pub(crate) fn stored_slopes(&self, numbers: &[f64], s: [f64; 3]) -> [f64; 4] {
-        if !matches!(self.of, Swinging::Orientation(_)) {
+        if !matches!(self.of, Swinging::Orientation) {
             return [s[0], s[1], s[2], 0.0];
         }
         let q: [f64; 4] = std::array::from_fn(|i| numbers[i]);
@@ -204,11 +195,64 @@ impl JointCone {
     }
 }
 
+impl JointCone {
+    pub(crate) const KIND: Kind = Kind {
+        name: "cone",
+        ports: &[
+            Port::perhaps_list("angles", PortType::Scalar),
+            Port::perhaps("orientation", PortType::Orientation),
+        ],
+    };
+}
+
+impl Contract for JointCone {
+    fn has(&self, port: &Port) -> bool {
+        (port.name == "orientation") == matches!(self.of, Swinging::Orientation)
+    }
+
+    fn outputs(&self) -> (PortType, usize) {
+        match self.of {
+            Swinging::Angles(_) => (PortType::Scalar, 3),
+            Swinging::Directions(_) => (PortType::Scalar, 2),
+            Swinging::Orientation => (PortType::Orientation, 1),
+        }
+    }
+
+    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+        let axes: &mut [Vec3] = match &mut self.of {
+            Swinging::Angles(axes) => axes,
+            Swinging::Directions(axes) => axes,
+            Swinging::Orientation => &mut [],
+        };
+        axes.iter_mut().map(|axis| ("axes", axis)).collect()
+    }
+
+    fn grow(&mut self, _: f64, _: &[f64]) {}
+
+    fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
+        match &mut self.of {
+            Swinging::Angles(axes) => *axes = axes.map(|axis| at.turning(axis)),
+            Swinging::Directions(axes) => *axes = axes.map(|axis| at.turning(axis)),
+            Swinging::Orientation => {}
+        }
+        // D·R(r, τ)·D = R(D·r, -τ).
+        let cone = &self.cone;
+        let twist = |bounds: Option<[f64; 2]>| bounds.map(|[low, high]| [-high, -low]);
+        let point =
+            |p: &ConePoint| ConePoint { direction: at.point(p.direction), twist: twist(p.twist) };
+        let points = cone.points().iter().map(point).collect();
+        let (rest, at_rest) = (at.point(cone.rest()), twist(cone.twist_at_rest()));
+        // Rounding can make a cone invalid that barely is one.
+        self.cone = Cone::new(rest, at_rest, points, cone.subdivisions(), cone.projection())
+            .map_err(|_| "write both sides".to_owned())?;
+        Ok(Mirrored::default())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::limit::{ConePoint, Projection};
-    use crate::position::CoordinateId;
+    use crate::limit::Projection;
 
     fn cone(half: f64, twist: Option<[f64; 2]>) -> Cone {
         let points = (0..24).map(|i| {
@@ -219,14 +263,10 @@ mod tests {
         Cone::new(-Vec3::Y, twist, points.collect(), 0, Projection::Nearest).unwrap()
     }
 
-    fn source(i: u32) -> Signal {
-        Signal::Coordinate(CoordinateId(i))
-    }
-
     #[test]
     fn legal_angles_make_the_legal_rotation_and_stay_near() {
         let axes = [Vec3::Z, Vec3::X, Vec3::Y];
-        let of = Swinging::Angles([0, 1, 2].map(source), axes);
+        let of = Swinging::Angles(axes);
         let limit = JointCone { of, cone: cone(0.7, Some([-0.5, 0.4])) };
         for asked in [[1.2, 0.3, 0.1], [-0.4, 1.1, 0.9], [0.2, 0.1, -1.5], [2.0, -1.0, 0.0]] {
             let found = limit.legal(&asked).expect("outside");
@@ -254,7 +294,7 @@ mod tests {
 
     #[test]
     fn two_angles_swing_without_a_twist() {
-        let of = Swinging::Directions([0, 1].map(source), [Vec3::Z, Vec3::X]);
+        let of = Swinging::Directions([Vec3::Z, Vec3::X]);
         let limit = JointCone { of, cone: cone(0.5, None) };
         assert_eq!(limit.rows(), 1);
         let found = limit.legal(&[0.9, 0.6]).unwrap();
@@ -266,7 +306,7 @@ mod tests {
     #[test]
     fn rows_change_as_their_slopes_say() {
         let axes = [Vec3::X, Vec3::Z, Vec3::Y];
-        let three = Swinging::Angles([0, 1, 2].map(source), axes);
+        let three = Swinging::Angles(axes);
         let limit = JointCone { of: three, cone: cone(0.9, Some([-0.5, 0.4])) };
         let at = [0.31, -0.42, 0.23];
         let h = 1e-6;

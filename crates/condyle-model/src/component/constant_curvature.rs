@@ -11,22 +11,56 @@
 //! For s below 0.001 or above 0.999 a straight rod p = L·t is used instead, for agreement with
 //! OpenSim. The discontinuity at s = 0.999 is that of OpenSim.
 
-use super::{Law, Signal};
+use super::{Contract, Kind, Mirrored, MotionLaw, Port, PortType, Reflection};
 use condyle_math::{Affine, Mat3, Scalar, Vec3};
 use std::f64::consts::FRAC_PI_2;
 
 /// A flexible column such as a simplified lumbar spine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConstantCurvature {
-    /// Angles about x, z and y, in this order, in radians.
-    pub angles: [Signal; 3],
-    /// Neutral angles in radians, added to the angles.
+    /// Neutral angles about x, z and y, in this order, in radians; added to the inputs.
     pub neutral: [f64; 3],
     /// Length of the arc in metres.
     pub length: f64,
 }
 
-impl Law for ConstantCurvature {
+impl ConstantCurvature {
+    pub(crate) const KIND: Kind = Kind {
+        name: "constant_curvature",
+        ports: &[
+            Port::one("about_x", PortType::Scalar),
+            Port::one("about_z", PortType::Scalar),
+            Port::one("about_y", PortType::Scalar),
+        ],
+    };
+}
+
+impl Contract for ConstantCurvature {
+    fn outputs(&self) -> (PortType, usize) {
+        (PortType::Transform, 1)
+    }
+
+    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+        vec![]
+    }
+
+    fn grow(&mut self, joint: f64, _: &[f64]) {
+        self.length *= joint;
+    }
+
+    fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
+        // In the order x, z, y; a turn about an axis keeps its sign if that axis is reversed.
+        let signs = match at.axis() {
+            0 => [1.0, -1.0, -1.0],
+            2 => [-1.0, 1.0, -1.0],
+            _ => return Err("its rest direction is y: write both sides, or turn its frame".into()),
+        };
+        self.neutral = std::array::from_fn(|i| signs[i] * self.neutral[i]);
+        Ok(Mirrored { inputs: signs.map(|sign| [sign, 0.0]).to_vec(), after: None })
+    }
+}
+
+impl MotionLaw for ConstantCurvature {
     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
         let bound = S::from_f64(FRAC_PI_2 - 0.01);
         let mut turns = [(S::zero(), S::one()); 3];

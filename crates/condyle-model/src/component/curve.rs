@@ -14,19 +14,47 @@
 //! c′ = 0 or where the tangent is along `up`: there R is built on an arbitrary perpendicular
 //! direction. `condyle check` finds such curves. Generator: by dual numbers.
 
-use super::{Law, Signal};
+use super::{Contract, Kind, Mirrored, MotionLaw, Port, PortType, Reflection};
 use condyle_math::function::SimmSpline;
 use condyle_math::{Affine, Lane, Mat3, Scalar, Vec3};
 
 /// Motion of a segment along a curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// The parameter of the curve.
-    pub parameter: Signal,
     /// The curve: splines of the parameter for x, y and z, in metres.
     pub path: Box<[SimmSpline; 3]>,
     /// The axes that follow the curve; `None` for a pure translation.
     pub heading: Option<Heading>,
+}
+
+impl Curve {
+    pub(crate) const KIND: Kind =
+        Kind { name: "curve", ports: &[Port::one("parameter", PortType::Scalar)] };
+}
+
+impl Contract for Curve {
+    fn outputs(&self) -> (PortType, usize) {
+        (PortType::Transform, 1)
+    }
+
+    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+        match &mut self.heading {
+            Some(Heading { forward, up }) => vec![("forward", forward), ("up", up)],
+            None => vec![],
+        }
+    }
+
+    fn grow(&mut self, joint: f64, _: &[f64]) {
+        self.path.iter_mut().for_each(|spline| spline.stretch(joint, 1.0));
+    }
+
+    fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
+        at.path(&mut self.path);
+        if let Some(Heading { forward, up }) = &mut self.heading {
+            (*forward, *up) = (at.point(*forward), at.point(*up));
+        }
+        Ok(Mirrored::default())
+    }
 }
 
 /// How a segment rotates with its curve.
@@ -79,7 +107,7 @@ fn across(v: Vec3) -> Vec3 {
     v.cross(pick).normalized()
 }
 
-impl Law for Curve {
+impl MotionLaw for Curve {
     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
         // The derivative of an order of component k, with its own slope for the chain rule.
         let at = |k: usize, order: usize| {
@@ -111,7 +139,6 @@ impl Law for Curve {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::position::CoordinateId;
 
     /// A circular arc of radius 2 in the ground plane, with dense knots.
     fn track(heading: Option<Heading>) -> Curve {
@@ -121,8 +148,7 @@ mod tests {
         };
         let path =
             [spline(&|u| 2.0 * u.sin()), spline(&|_| 0.0), spline(&|u| 2.0 * (u.cos() - 1.0))];
-        let parameter = Signal::Coordinate(CoordinateId(0));
-        Curve { parameter, path: Box::new(path), heading }
+        Curve { path: Box::new(path), heading }
     }
 
     #[test]

@@ -3,8 +3,8 @@
 //! The law is one generic function, which posing, derivatives and tracking evaluate. Files store
 //! its name and its parameters.
 
-use super::{Law, Signal};
-use condyle_math::{Affine, Dual, Lane, Scalar};
+use super::{Contract, Kind, Mirrored, MotionLaw, Port, PortType, Reflection};
+use condyle_math::{Affine, Dual, Lane, Scalar, Vec3};
 use std::any::TypeId;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -18,19 +18,19 @@ pub type LawDual = Dual<MOST_LAW_INPUTS>;
 /// The parameters of a [`Custom`] component: lists of numbers by name, in metres and radians.
 pub type Parameters = BTreeMap<String, Vec<f64>>;
 
-/// An object-safe [`Law`], in the form in which a [`Custom`] component stores it.
+/// An object-safe [`MotionLaw`], in the form in which a [`Custom`] component stores it.
 ///
-/// Blanket-implemented for every `Law` that is `Debug`, `Send` and `Sync`.
+/// Blanket-implemented for every `MotionLaw` that is `Debug`, `Send` and `Sync`.
 pub trait ErasedLaw: fmt::Debug + Send + Sync {
     /// The transform.
     fn at(&self, inputs: &[f64]) -> Affine;
     /// The transform with its derivatives.
     fn dual_at(&self, inputs: &[LawDual]) -> Affine<LawDual>;
-    /// Whether it is rigid at all inputs; see [`Law::is_rigid`].
+    /// Whether it is rigid at all inputs; see [`MotionLaw::is_rigid`].
     fn is_rigid(&self) -> bool;
 }
 
-impl<L: Law + fmt::Debug + Send + Sync> ErasedLaw for L {
+impl<L: MotionLaw + fmt::Debug + Send + Sync> ErasedLaw for L {
     fn at(&self, inputs: &[f64]) -> Affine {
         self.transform(inputs)
     }
@@ -40,7 +40,7 @@ impl<L: Law + fmt::Debug + Send + Sync> ErasedLaw for L {
     }
 
     fn is_rigid(&self) -> bool {
-        Law::is_rigid(self)
+        MotionLaw::is_rigid(self)
     }
 }
 
@@ -51,15 +51,37 @@ pub struct Custom {
     pub law: String,
     /// The parameters of the law.
     pub parameters: Parameters,
-    /// The sources of its inputs, in the law's order; at most [`MOST_LAW_INPUTS`].
-    pub inputs: Vec<Signal>,
     motion: Arc<dyn ErasedLaw>,
 }
 
 impl PartialEq for Custom {
     fn eq(&self, other: &Self) -> bool {
-        (&self.law, &self.parameters, &self.inputs)
-            == (&other.law, &other.parameters, &other.inputs)
+        (&self.law, &self.parameters) == (&other.law, &other.parameters)
+    }
+}
+
+impl Custom {
+    pub(crate) const KIND: Kind =
+        Kind { name: "custom", ports: &[Port::list("inputs", PortType::Scalar)] };
+}
+
+impl Contract for Custom {
+    fn deforms(&self) -> bool {
+        !self.motion.is_rigid()
+    }
+
+    fn outputs(&self) -> (PortType, usize) {
+        (PortType::Transform, 1)
+    }
+
+    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+        vec![]
+    }
+
+    fn grow(&mut self, _: f64, _: &[f64]) {}
+
+    fn mirror(&mut self, _: Reflection) -> Result<Mirrored, String> {
+        Err(format!("the mirror image of law `{}` is not known: write both sides", self.law))
     }
 }
 
@@ -87,7 +109,7 @@ impl Custom {
     }
 }
 
-impl Law for Custom {
+impl MotionLaw for Custom {
     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
         let mut all = [S::zero(); MOST_LAW_INPUTS];
         let n = inputs.len().min(MOST_LAW_INPUTS);
@@ -107,12 +129,12 @@ type Maker = dyn Fn(&Parameters) -> Result<Arc<dyn ErasedLaw>, String> + Send + 
 ///
 /// ```
 /// use condyle_math::{Affine, Mat3, Scalar, Vec3};
-/// use condyle_model::component::{Law, Registry};
+/// use condyle_model::component::{MotionLaw, Registry};
 ///
 /// /// A cam: it rotates about z and lifts as it rotates.
 /// #[derive(Debug)]
 /// struct Cam { lift: f64 }
-/// impl Law for Cam {
+/// impl MotionLaw for Cam {
 ///     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
 ///         let (s, c) = inputs[0].sin_cos();
 ///         let lift = (S::one() - c) * S::from_f64(self.lift);
@@ -127,8 +149,7 @@ type Maker = dyn Fn(&Parameters) -> Result<Arc<dyn ErasedLaw>, String> + Send + 
 ///     Ok(Cam { lift: *lift.ok_or("it needs a `lift` in metres")? })
 /// });
 /// let parameters = [("lift".to_owned(), vec![0.02])].into();
-/// let inputs = vec![]; // where the angle comes from, in a real model
-/// let cam = registry.make("cam", parameters, inputs).unwrap();
+/// let cam = registry.make("cam", parameters).unwrap();
 /// assert_eq!(cam.transform(&[std::f64::consts::PI]).translation.y, 0.04);
 /// ```
 #[derive(Clone, Default)]
@@ -169,16 +190,11 @@ impl Registry {
         self.laws.get(name).map(|(inputs, _)| inputs.as_slice())
     }
 
-    /// A component with a registered law.
+    /// A registered law with these parameters.
     ///
     /// # Errors
     /// A sentence: the law is not registered, or the error of its `make` function.
-    pub fn make(
-        &self,
-        name: &str,
-        parameters: Parameters,
-        inputs: Vec<Signal>,
-    ) -> Result<Custom, String> {
+    pub fn make(&self, name: &str, parameters: Parameters) -> Result<Custom, String> {
         let Some((_, make)) = self.laws.get(name) else {
             let known: Vec<&str> = self.names().collect();
             return Err(match known.is_empty() {
@@ -187,6 +203,6 @@ impl Registry {
             });
         };
         let motion = make(&parameters)?;
-        Ok(Custom { law: name.to_owned(), parameters, inputs, motion })
+        Ok(Custom { law: name.to_owned(), parameters, motion })
     }
 }

@@ -12,19 +12,39 @@
 //! precedence. In open mode it passes unchanged, and the bounds are limit rows x - lower(d) ≥ 0 and
 //! upper(d) - x ≥ 0 for a solver. Kinks: in posed mode, where a bound becomes active.
 
-use super::Signal;
+use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
+use condyle_math::Vec3;
 use condyle_math::function::Function;
 
 /// A passive angle whose bounds are functions of a driver: for example the elevation of the
 /// clavicle, bounded by that of the arm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Depend {
-    /// The bounded angle.
-    pub passive: Signal,
-    /// The argument of the bounds.
-    pub driver: Signal,
     /// Smallest value of the passive angle, as a function of the driver.
     pub lower: Option<Function>,
     /// Largest value of the passive angle, as a function of the driver.
     pub upper: Option<Function>,
+}
+
+impl Depend {
+    pub(crate) const KIND: Kind = Kind {
+        name: "depend",
+        ports: &[Port::one("passive", PortType::Scalar), Port::one("driver", PortType::Scalar)],
+    };
+}
+
+impl Contract for Depend {
+    fn outputs(&self) -> (PortType, usize) {
+        (PortType::Scalar, 1)
+    }
+
+    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+        vec![]
+    }
+
+    fn grow(&mut self, _: f64, _: &[f64]) {}
+
+    fn mirror(&mut self, _: Reflection) -> Result<Mirrored, String> {
+        Ok(Mirrored::default())
+    }
 }

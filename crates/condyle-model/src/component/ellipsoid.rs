@@ -10,18 +10,54 @@
 //! the frame is not the surface normal: with half axes of 7, 15 and 7 cm the two differ by up to
 //! 21.3 degrees. No kinks. Generator: by dual numbers.
 
-use super::{Law, Signal};
+use super::{Contract, Kind, Mirrored, MotionLaw, Port, PortType, Reflection};
 use condyle_math::{Affine, Mat3, Scalar, Vec3};
+use std::f64::consts::PI;
 
 /// Gliding on an ellipsoid with rotation, like the scapula on the ribs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ellipsoid {
-    /// Body-fixed angles about x, y, z in radians.
-    pub angles: [Signal; 3],
     /// Half axes in metres.
     pub radii: Vec3,
     /// The meaning of the frame's z axis.
     pub axis: SurfaceAxis,
+}
+
+impl Ellipsoid {
+    pub(crate) const KIND: Kind = Kind {
+        name: "ellipsoid",
+        ports: &[
+            Port::one("about_x", PortType::Scalar),
+            Port::one("about_y", PortType::Scalar),
+            Port::one("about_z", PortType::Scalar),
+        ],
+    };
+}
+
+impl Contract for Ellipsoid {
+    fn outputs(&self) -> (PortType, usize) {
+        (PortType::Transform, 1)
+    }
+
+    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+        vec![]
+    }
+
+    fn grow(&mut self, joint: f64, _: &[f64]) {
+        self.radii = self.radii * joint;
+    }
+
+    fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
+        // At z the pole is reversed: D·Rx(a)·Ry(b)·Rz(c)·D = Rx(π-a)·Ry(b)·Rz(-c)·Rx(π).
+        let half_turn = Affine::from_rotation(Mat3::from_columns(Vec3::X, -Vec3::Y, -Vec3::Z));
+        let (signs, lead, after) = match at.axis() {
+            0 => ([1.0, -1.0, -1.0], 0.0, None),
+            1 => ([-1.0, 1.0, -1.0], 0.0, None),
+            _ => ([-1.0, 1.0, -1.0], PI, Some(half_turn)),
+        };
+        let [x, y, z] = signs;
+        Ok(Mirrored { inputs: vec![[x, lead], [y, 0.0], [z, 0.0]], after })
+    }
 }
 
 /// The meaning of the z axis of a frame that glides on an ellipsoid.
@@ -35,7 +71,7 @@ pub enum SurfaceAxis {
     Normal,
 }
 
-impl Law for Ellipsoid {
+impl MotionLaw for Ellipsoid {
     #[inline]
     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
         let [a, b, c] = [inputs[0], inputs[1], inputs[2]].map(S::sin_cos);

@@ -1,12 +1,15 @@
 //! The components of joint sets.
 //!
-//! A component reads scalars (angles in radians, distances in metres), orientations or transforms,
-//! and computes scalars, an orientation or one transform. Its formula is at the top of its file.
-//! Nearly all components are smooth: evaluated on [`Dual`](condyle_math::Dual) numbers they give
-//! their exact derivatives, and the generator of a rigid transform T(x) is the twist Ṫ·T⁻¹ in the
-//! frame that T maps to.
+//! A [`Component`] is a [`Law`] and its wiring: the law says what is computed from what, with its
+//! parameters; the wiring says which signals are at its ports. A law reads scalars (angles in radians,
+//! distances in metres), orientations, transforms or places of segments, and computes scalars, an
+//! orientation or one transform. Its formula is at the top of its file.
 //!
-//! | component | in → out |
+//! Nearly all laws are smooth: evaluated on [`Dual`](condyle_math::Dual) numbers they give their exact
+//! derivatives, and the generator of a rigid transform T(x) is the twist Ṫ·T⁻¹ in the frame that T maps
+//! to.
+//!
+//! | law | in → out |
 //! | --- | --- |
 //! | [`Map`] | scalar → scalars, one function each |
 //! | [`Combine`] | scalars → scalar |
@@ -27,9 +30,9 @@
 //! | [`Custom`] | scalars → the transform of a user's law |
 //! | [`Product`] | transforms → their product |
 //!
-//! To add a component: a file here with its struct and its formula, a variant of [`Component`], its
-//! ports in [`Component::inputs`] and [`Component::outputs`], and its compilation in
-//! `evaluate/compile/`; a smooth function of scalars only needs to implement [`Law`] for that.
+//! To add a law: a file here with its struct, its formula and its [`Contract`], a variant of [`Law`], and
+//! its compilation in `evaluate/compile/`; a smooth function of scalars only needs to implement
+//! [`MotionLaw`] for that. The compiler names every place.
 
 mod ball;
 mod combine;
@@ -44,7 +47,9 @@ mod ellipsoid;
 mod map;
 mod pivot;
 mod place;
+mod port;
 mod product;
+mod reflection;
 mod rotate;
 mod scale;
 pub(crate) mod shear;
@@ -63,46 +68,122 @@ pub use ellipsoid::{Ellipsoid, SurfaceAxis};
 pub use map::Map;
 pub use pivot::{Centre, Pivot, PivotError};
 pub use place::Place;
+pub use port::{Arity, Kind, Port, PortType, Signal};
 pub use product::Product;
+pub use reflection::{Mirrored, Reflection};
 pub use rotate::Rotate;
 pub use scale::{Along, Scale};
 pub use shear::Shear;
 pub use translate::Translate;
 
-use crate::position::{ComponentId, CoordinateId};
-use condyle_math::{Affine, Scalar};
+use crate::position::{JointSetId, SegmentId};
+use condyle_math::{Affine, Scalar, Vec3};
 
-/// What flows into a port of a component, or moves a segment: the value of a coordinate or an output
-/// of a component.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Signal {
-    /// The requested value of a coordinate, of any joint set; in posed mode clamped to its range.
-    /// If a limit component acts on the coordinate, the limited value is that component's output.
-    Coordinate(CoordinateId),
-    /// One output of a component, of any joint set.
-    Output(ComponentId, u32),
+/// A component of a joint set: a law, and where its inputs come from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Component {
+    /// Its name, unique in its joint set.
+    pub name: String,
+    /// The joint set it belongs to.
+    pub joint_set: JointSetId,
+    /// What it computes.
+    pub law: Law,
+    /// The signals at its ports, in the order of [`Law::ports`]; of a port that takes a list, all of it.
+    pub inputs: Vec<Signal>,
 }
 
-impl From<CoordinateId> for Signal {
-    fn from(id: CoordinateId) -> Self {
-        Self::Coordinate(id)
+impl Component {
+    /// Each input with its port.
+    pub fn ports(&self) -> impl Iterator<Item = (&'static Port, Signal)> {
+        self.law.ports_of(self.inputs.len()).zip(self.inputs.iter().copied())
+    }
+
+    /// The signals at a port; none where it is not connected or there is no such port.
+    pub fn at(&self, port: &str) -> &[Signal] {
+        self.by_port().find(|(p, _)| p.name == port).map_or(&[], |(_, signals)| signals)
+    }
+
+    /// The segments at a port.
+    pub fn segments_at(&self, port: &str) -> impl Iterator<Item = SegmentId> {
+        self.at(port).iter().filter_map(|signal| signal.segment())
+    }
+
+    /// The inputs that are values, not places of segments.
+    pub fn values(&self) -> impl Iterator<Item = Signal> {
+        self.inputs.iter().copied().filter(|signal| signal.segment().is_none())
+    }
+
+    /// Each port with its signals.
+    pub fn by_port(&self) -> impl Iterator<Item = (&'static Port, &[Signal])> {
+        let mut rest = &self.inputs[..];
+        self.law.widths(self.inputs.len()).map(move |(port, width)| {
+            let (own, after) = rest.split_at(width.min(rest.len()));
+            rest = after;
+            (port, own)
+        })
     }
 }
 
-/// The type of the value of a port.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PortType {
-    /// One number: an angle, a distance, a factor.
-    Scalar,
-    /// A unit quaternion.
-    Orientation,
-    /// A transform.
-    Transform,
+/// What every law states about itself, beside the `KIND` of its type: its name in files and messages,
+/// and its ports.
+pub(crate) trait Contract {
+    /// Whether it has a port that only some laws of its kind have.
+    fn has(&self, _port: &Port) -> bool {
+        true
+    }
+
+    /// The type of its outputs, and their number.
+    fn outputs(&self) -> (PortType, usize);
+
+    /// The directions among its parameters by their names in files; normalised when a model is built.
+    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)>;
+
+    /// Whether its transform stretches or shears what it moves, by itself.
+    fn deforms(&self) -> bool {
+        false
+    }
+
+    /// Multiplies the lengths that it holds: by the factor of its joint, which is that of the parent of
+    /// the segment that it moves, or by those of the segments at its ports, in their order.
+    fn grow(&mut self, joint: f64, segments: &[f64]);
+
+    /// Makes it the law of the other side of the body. Values of coordinates are equal on both sides:
+    /// the transform T becomes D·T·D with the reflection D.
+    ///
+    /// # Errors
+    /// What to do, where the mirror image is no law of this kind.
+    fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String>;
 }
 
-/// A component of a joint set: its parameters and where its inputs come from.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Component {
+macro_rules! laws {
+    ($($(#[doc = $doc:literal])* $variant:ident($type:ident),)*) => {
+        /// What a component computes: one of the laws, with its parameters.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum Law {
+            $($(#[doc = $doc])* $variant($type),)*
+        }
+
+        impl Law {
+            /// All kinds of laws.
+            pub const KINDS: &[Kind] = &[$($type::KIND,)*];
+
+            /// Its kind: its name and all ports that such a law can have.
+            pub fn kind(&self) -> &'static Kind {
+                match self { $(Self::$variant(_) => const { &$type::KIND },)* }
+            }
+
+            fn contract(&self) -> &dyn Contract {
+                match self { $(Self::$variant(law) => law,)* }
+            }
+
+            fn contract_mut(&mut self) -> &mut dyn Contract {
+                match self { $(Self::$variant(law) => law,)* }
+            }
+        }
+    };
+}
+
+laws! {
     /// Scalar to scalars.
     Map(Map),
     /// Scalars to scalar.
@@ -141,87 +222,61 @@ pub enum Component {
     Product(Product),
 }
 
-impl Component {
-    /// The component's name in files and messages.
-    pub fn kind(&self) -> &'static str {
-        match self {
-            Self::Map(_) => "map",
-            Self::Combine(_) => "combine",
-            Self::Depend(_) => "depend",
-            Self::Cone(_) => "cone",
-            Self::Contact(_) => "contact",
-            Self::Rotate(_) => "rotate",
-            Self::Pivot(_) => "pivot",
-            Self::Translate(_) => "translate",
-            Self::Ball(_) => "ball",
-            Self::Place(_) => "place",
-            Self::Ellipsoid(_) => "ellipsoid",
-            Self::ConstantCurvature(_) => "constant_curvature",
-            Self::Compensate(_) => "compensate",
-            Self::Scale(_) => "scale",
-            Self::Shear(_) => "shear",
-            Self::Curve(_) => "curve",
-            Self::Custom(_) => "custom",
-            Self::Product(_) => "product",
-        }
+impl Law {
+    /// Its ports, in the order of [`Component::inputs`].
+    pub fn ports(&self) -> impl Iterator<Item = &'static Port> {
+        let law = self.contract();
+        self.kind().ports.iter().filter(|port| law.has(port))
     }
 
-    /// The inputs: the name, type and source of each port.
-    ///
-    /// A [`Compensate`] refers to segments and has no ports, and a [`Contact`] also reads the
-    /// motions on the path to its surface: [`Model::reads`](crate::Model::reads) includes them.
-    pub fn inputs(&self) -> Vec<(&'static str, PortType, Signal)> {
-        use PortType::{Orientation, Scalar, Transform};
-        let three = |names: [&'static str; 3], sources: [Signal; 3]| {
-            names.into_iter().zip(sources).map(|(name, s)| (name, Scalar, s)).collect()
-        };
-        match self {
-            Self::Map(c) => vec![("input", Scalar, c.input)],
-            Self::Combine(c) => c.inputs.iter().map(|&s| ("inputs", Scalar, s)).collect(),
-            Self::Depend(c) => vec![("passive", Scalar, c.passive), ("driver", Scalar, c.driver)],
-            Self::Cone(c) => match &c.of {
-                Swinging::Angles(s, _) => s.iter().map(|&s| ("angles", Scalar, s)).collect(),
-                Swinging::Directions(s, _) => s.iter().map(|&s| ("angles", Scalar, s)).collect(),
-                Swinging::Orientation(s) => vec![("orientation", Orientation, *s)],
-            },
-            Self::Contact(c) => {
-                let before = c.before.map(|s| ("before", Transform, s));
-                let drivers = c.drivers.iter().map(|&s| ("drivers", Scalar, s));
-                before.into_iter().chain(drivers).collect()
-            }
-            Self::Rotate(c) => vec![("angle", Scalar, c.angle)],
-            Self::Pivot(c) => vec![("angle", Scalar, c.angle)],
-            Self::Translate(c) => vec![("distance", Scalar, c.distance)],
-            Self::Ball(c) => vec![("orientation", Orientation, c.orientation)],
-            Self::Place(_) | Self::Compensate(_) => vec![],
-            Self::Ellipsoid(c) => three(["about_x", "about_y", "about_z"], c.angles),
-            Self::ConstantCurvature(c) => three(["about_x", "about_z", "about_y"], c.angles),
-            Self::Scale(c) => vec![("factor", Scalar, c.factor)],
-            Self::Shear(c) => vec![("amount", Scalar, c.amount)],
-            Self::Curve(c) => vec![("parameter", Scalar, c.parameter)],
-            Self::Custom(c) => c.inputs.iter().map(|&s| ("inputs", Scalar, s)).collect(),
-            Self::Product(c) => c.factors.iter().map(|&s| ("factors", Transform, s)).collect(),
-        }
+    /// The port of each of so many inputs: one for a port, and for a list all that the others do not
+    /// take.
+    pub fn ports_of(&self, inputs: usize) -> impl Iterator<Item = &'static Port> {
+        self.widths(inputs).flat_map(|(port, width)| std::iter::repeat_n(port, width))
+    }
+
+    fn widths(&self, inputs: usize) -> impl Iterator<Item = (&'static Port, usize)> {
+        let single = self.ports().filter(|port| !port.is_list()).count();
+        let listed = inputs.saturating_sub(single);
+        self.ports().map(move |port| (port, if port.is_list() { listed } else { 1 }))
     }
 
     /// The type of the outputs, and their number.
     pub fn outputs(&self) -> (PortType, usize) {
-        match self {
-            Self::Map(c) => (PortType::Scalar, c.functions.len()),
-            Self::Combine(_) | Self::Depend(_) => (PortType::Scalar, 1),
-            Self::Cone(c) => match c.of {
-                Swinging::Angles(..) => (PortType::Scalar, 3),
-                Swinging::Directions(..) => (PortType::Scalar, 2),
-                Swinging::Orientation(_) => (PortType::Orientation, 1),
-            },
-            _ => (PortType::Transform, 1),
-        }
+        self.contract().outputs()
+    }
+
+    /// Whether its transform stretches or shears what it moves, by itself.
+    pub(crate) fn deforms(&self) -> bool {
+        self.contract().deforms()
+    }
+
+    /// The directions among its parameters, by their names in files.
+    pub(crate) fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+        self.contract_mut().directions()
+    }
+
+    /// Multiplies the lengths that it holds: by the factor of its joint, or by those of the segments at
+    /// its ports.
+    pub(crate) fn grow(&mut self, joint: f64, segments: &[f64]) {
+        self.contract_mut().grow(joint, segments);
+    }
+
+    /// Makes it the law of the other side of the body, for equal values of coordinates: its transform T
+    /// becomes D·T·D with the reflection D.
+    ///
+    /// The result says what else has to change: the values at its ports, and a transform after it.
+    ///
+    /// # Errors
+    /// A sentence that says what to do, where the mirror image is no law of this kind.
+    pub fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
+        self.contract_mut().mirror(at)
     }
 }
 
 /// A smooth transform-valued function of a few scalars, generic over the scalar type.
-pub trait Law {
-    /// The transform at these inputs, in the order of [`Component::inputs`].
+pub trait MotionLaw {
+    /// The transform at these inputs, in the order of its ports.
     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S>;
 
     /// Whether the transform is rigid (preserves lengths and angles) at all inputs; `true` by
@@ -231,8 +286,5 @@ pub trait Law {
     }
 }
 
-/// The largest number of inputs of a [`Law`].
+/// The largest number of inputs of a [`MotionLaw`].
 pub const MOST_LAW_INPUTS: usize = 4;
-
-/// The largest number of inputs of a [`Combine`].
-pub const MOST_COMBINED: usize = 16;

@@ -25,15 +25,13 @@
 //! order h. Generator: the rotation (a, c × a) about the centre. Kinks: at the ends of intervals
 //! the centre, and with it the derivative, is discontinuous.
 
-use super::{Law, Signal};
+use super::{Contract, Kind, Mirrored, MotionLaw, Port, PortType, Reflection};
 use condyle_math::function::SimmSpline;
 use condyle_math::{Affine, Lane, Mat3, Scalar, Vec3};
 
 /// A hinge with a moving centre, like the knee.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pivot {
-    /// The angle in radians.
-    pub angle: Signal,
     axis: Vec3,
     centre: Centre,
     /// The upper ends of the pieces, increasing; the last piece has none.
@@ -91,12 +89,12 @@ impl std::fmt::Display for PivotError {
 impl std::error::Error for PivotError {}
 
 impl Pivot {
-    /// A pivot by an angle (radians) about an axis of any length except zero.
+    /// A pivot about an axis of any length except zero.
     ///
     /// # Errors
     /// [`PivotError`] for an axis of length 0, no centre, numbers that are not finite, or intervals
     /// that are not increasing.
-    pub fn new(angle: Signal, axis: Vec3, centre: Centre) -> Result<Self, PivotError> {
+    pub fn new(axis: Vec3, centre: Centre) -> Result<Self, PivotError> {
         let length = axis.norm();
         if !(length.is_finite() && length > 1e-9) {
             return Err(PivotError::Axis);
@@ -123,8 +121,7 @@ impl Pivot {
                 }
             }
         };
-        let mut pivot =
-            Self { angle, axis: axis.normalized(), centre, ends: vec![], pieces: vec![] };
+        let mut pivot = Self { axis: axis.normalized(), centre, ends: vec![], pieces: vec![] };
         // Integrate from 0 outwards: each piece begins with the position at the end of the previous
         // one. The side below 0 is processed with negated ends.
         let mut sides = [vec![], vec![]];
@@ -254,7 +251,48 @@ impl Piece {
     }
 }
 
-impl Law for Pivot {
+impl Pivot {
+    pub(crate) const KIND: Kind =
+        Kind { name: "pivot", ports: &[Port::one("angle", PortType::Scalar)] };
+}
+
+impl Contract for Pivot {
+    fn outputs(&self) -> (PortType, usize) {
+        (PortType::Transform, 1)
+    }
+
+    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+        vec![]
+    }
+
+    fn grow(&mut self, joint: f64, _: &[f64]) {
+        self.change(self.axis, |centre| match centre {
+            Centre::Intervals(list) => list.iter_mut().for_each(|(_, at)| *at = *at * joint),
+            Centre::Path(path) => path.iter_mut().for_each(|spline| spline.stretch(joint, 1.0)),
+        });
+    }
+
+    fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
+        self.change(at.turning(self.axis), |centre| match centre {
+            Centre::Intervals(list) => list.iter_mut().for_each(|(_, c)| *c = at.point(*c)),
+            Centre::Path(path) => at.path(path),
+        });
+        Ok(Mirrored::default())
+    }
+}
+
+impl Pivot {
+    /// Replaces the axis and changes the centre.
+    fn change(&mut self, axis: Vec3, change: impl FnOnce(&mut Centre)) {
+        let mut centre = self.centre.clone();
+        change(&mut centre);
+        if let Ok(pivot) = Self::new(axis, centre) {
+            *self = pivot;
+        }
+    }
+}
+
+impl MotionLaw for Pivot {
     #[inline]
     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
         let angle = inputs[0];
@@ -279,10 +317,9 @@ impl Law for Pivot {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::position::CoordinateId;
 
     fn pivot(centre: Centre) -> Pivot {
-        Pivot::new(Signal::Coordinate(CoordinateId(0)), Vec3::Z * 2.0, centre).unwrap()
+        Pivot::new(Vec3::Z * 2.0, centre).unwrap()
     }
 
     fn about(centre: Vec3, degrees: f64) -> Affine {
@@ -367,8 +404,7 @@ mod tests {
 
     #[test]
     fn what_cannot_pivot_is_refused() {
-        let source = Signal::Coordinate(CoordinateId(0));
-        let make = |axis, list| Pivot::new(source, axis, Centre::Intervals(list)).unwrap_err();
+        let make = |axis, list| Pivot::new(axis, Centre::Intervals(list)).unwrap_err();
         assert_eq!(make(Vec3::ZERO, vec![(1.0, Vec3::X)]), PivotError::Axis);
         assert_eq!(make(Vec3::X, vec![]), PivotError::NoCentre);
         let crossed = vec![(1.0, Vec3::X), (1.0, Vec3::Y)];

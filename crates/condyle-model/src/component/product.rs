@@ -3,11 +3,30 @@
 //! The first factor is nearest to the parent. Generators: those of each factor, transformed by the
 //! product of the factors before it.
 
-use super::Signal;
+use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
+use condyle_math::Vec3;
 
-/// A product of motions.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Product {
-    /// The factors, the one nearest to the parent first.
-    pub factors: Vec<Signal>,
+/// A product of motions, the factor nearest to the parent first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Product;
+
+impl Product {
+    pub(crate) const KIND: Kind =
+        Kind { name: "product", ports: &[Port::list("factors", PortType::Transform)] };
+}
+
+impl Contract for Product {
+    fn outputs(&self) -> (PortType, usize) {
+        (PortType::Transform, 1)
+    }
+
+    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+        vec![]
+    }
+
+    fn grow(&mut self, _: f64, _: &[f64]) {}
+
+    fn mirror(&mut self, _: Reflection) -> Result<Mirrored, String> {
+        Ok(Mirrored::default())
+    }
 }

@@ -3,14 +3,34 @@
 //! Generator: (a, 0). For an axis through another point, put a [`Place`](super::Place) before it
 //! and its inverse after it.
 
-use super::Signal;
+use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
 use condyle_math::Vec3;
 
 /// A hinge: rotation by one angle about one axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rotate {
-    /// The angle in radians.
-    pub angle: Signal,
     /// The axis; it is normalised when the model is built.
     pub axis: Vec3,
+}
+
+impl Rotate {
+    pub(crate) const KIND: Kind =
+        Kind { name: "rotate", ports: &[Port::one("angle", PortType::Scalar)] };
+}
+
+impl Contract for Rotate {
+    fn outputs(&self) -> (PortType, usize) {
+        (PortType::Transform, 1)
+    }
+
+    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+        vec![("axis", &mut self.axis)]
+    }
+
+    fn grow(&mut self, _: f64, _: &[f64]) {}
+
+    fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
+        self.axis = at.turning(self.axis);
+        Ok(Mirrored::default())
+    }
 }

@@ -11,7 +11,7 @@
 //! mirrored; these are the only kinks. Generator: M′·M⁻¹, which is not rigid. Normals are
 //! transformed by the inverse transpose M⁻ᵀ, which is M at 1/s.
 
-use super::Signal;
+use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
 use condyle_math::{Mat3, Scalar, Vec3};
 
 /// The smallest factor; smaller ones are clamped.
@@ -22,10 +22,36 @@ const MOST: f64 = 1e6;
 /// A scale by one factor, for example the stretch of a cartoon character or the growth of a child.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
-    /// The factor, dimensionless; 1 is the identity.
-    pub factor: Signal,
     /// The directions that are scaled.
     pub along: Along,
+}
+
+impl Scale {
+    pub(crate) const KIND: Kind =
+        Kind { name: "scale", ports: &[Port::one("factor", PortType::Scalar)] };
+}
+
+impl Contract for Scale {
+    fn deforms(&self) -> bool {
+        true
+    }
+
+    fn outputs(&self) -> (PortType, usize) {
+        (PortType::Transform, 1)
+    }
+
+    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+        self.along.axis_mut().map(|axis| ("axis", axis)).into_iter().collect()
+    }
+
+    fn grow(&mut self, _: f64, _: &[f64]) {}
+
+    fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
+        if let Some(axis) = self.along.axis_mut() {
+            *axis = at.point(*axis);
+        }
+        Ok(Mirrored::default())
+    }
 }
 
 /// The directions that a [`Scale`] scales.
@@ -82,7 +108,7 @@ impl Along {
         }
     }
 
-    pub(crate) fn axis_mut(&mut self) -> Option<&mut Vec3> {
+    fn axis_mut(&mut self) -> Option<&mut Vec3> {
         match self {
             Self::Everywhere => None,
             Self::Axis(axis) | Self::Volume(axis) => Some(axis),

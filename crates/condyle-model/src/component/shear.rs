@@ -5,18 +5,44 @@
 //! transpose, which transforms normals, is I - s·n·aᵀ. Generator: a·nᵀ, which is not rigid. Kinks:
 //! amounts are clamped to ±10⁶.
 
-use super::Signal;
+use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
 use condyle_math::{Mat3, Scalar, Vec3};
 
-/// A shear by one amount.
+/// A shear by one amount: the displacement per unit of distance from the plane, dimensionless; 0 is the
+/// identity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shear {
-    /// The displacement per unit of distance from the plane, dimensionless; 0 is the identity.
-    pub amount: Signal,
     /// The direction a of the displacement; it is normalised when the model is built.
     pub along: Vec3,
     /// The normal n of the plane, perpendicular to `along`; normalised as well.
     pub across: Vec3,
+}
+
+impl Shear {
+    pub(crate) const KIND: Kind =
+        Kind { name: "shear", ports: &[Port::one("amount", PortType::Scalar)] };
+}
+
+impl Contract for Shear {
+    fn deforms(&self) -> bool {
+        true
+    }
+
+    fn outputs(&self) -> (PortType, usize) {
+        (PortType::Transform, 1)
+    }
+
+    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+        vec![("along", &mut self.along), ("across", &mut self.across)]
+    }
+
+    fn grow(&mut self, _: f64, _: &[f64]) {}
+
+    fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
+        self.along = at.point(self.along);
+        self.across = at.point(self.across);
+        Ok(Mirrored::default())
+    }
 }
 
 /// The largest absolute amount; larger ones are clamped.

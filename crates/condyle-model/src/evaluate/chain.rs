@@ -2,7 +2,7 @@
 
 use super::instruction::{Code, Frame, Step};
 use super::pose::Pose;
-use crate::component::{Law, MOST_LAW_INPUTS, shear};
+use crate::component::{MOST_LAW_INPUTS, MotionLaw, shear};
 use condyle_math::{Affine, Mat3, Quat, Scalar, Twist, Vec3};
 
 /// An observer that is called for every elementary motion of a chain, to record its generator.

@@ -157,8 +157,8 @@ pub(super) fn plan(
             }
             Instruction::Cone { cone } => {
                 let call = &code.cones[*cone as usize];
-                let inputs: Vec<Vec<(u32, u32)>> = match call.component.of {
-                    Swinging::Orientation(_) => {
+                let inputs: Vec<Vec<(u32, u32)>> = match call.law.of {
+                    Swinging::Orientation => {
                         // The register of x stands for all four numbers and their three directions.
                         let first = scalars[call.inputs[0].index()].clone();
                         scalars[call.outputs[0].index()] = first.clone();

@@ -4,7 +4,6 @@ use super::chain::{Silent, run_chain};
 use super::instruction::Instruction;
 use super::pose::Pose;
 use super::program::{Mode, Program, SizeMismatch};
-use crate::component::MOST_COMBINED;
 use condyle_math::{Affine, Lane, Quat, Scalar};
 
 /// The largest absolute value of a scalar; larger ones are clamped.
@@ -157,12 +156,8 @@ impl Program {
             }
             Instruction::Combine { function, output } => {
                 let call = &self.code.combines[function as usize];
-                let mut values = [S::zero(); MOST_COMBINED];
-                let n = call.inputs.len();
-                for (value, &input) in values.iter_mut().zip(&call.inputs) {
-                    *value = scalars[input.index()];
-                }
-                scalars[output.index()] = finite(call.function.apply(&values[..n]));
+                let inputs = call.inputs.iter().map(|input| scalars[input.index()]);
+                scalars[output.index()] = finite(call.function.apply_to(inputs));
             }
             Instruction::Hold { passive, lower, upper, output } => {
                 let mut value = scalars[passive.index()];
@@ -199,7 +194,7 @@ impl Program {
         if mode == Mode::Posed {
             numbers = S::lane_by_lane(numbers, |asked| {
                 // Constants: the derivative of a moved number is taken as 0.
-                let legal = call.component.legal(&asked.map(Lane::value)[..n]);
+                let legal = call.law.legal(&asked.map(Lane::value)[..n]);
                 legal.map_or(asked, |legal| legal.map(Scalar::from_f64))
             });
             // The effective posture is legal: no violation remains.
@@ -207,8 +202,8 @@ impl Program {
         } else {
             let rows = S::lane_by_lane(numbers, |asked| {
                 let values = &asked.map(Lane::value)[..n];
-                call.component.open_rows(values).map(|(value, slopes)| {
-                    let slopes = call.component.stored_slopes(values, slopes);
+                call.law.open_rows(values).map(|(value, slopes)| {
+                    let slopes = call.law.stored_slopes(values, slopes);
                     // A row is known by value and slopes: Σ x.chain(0, slope) adds the derivatives
                     // only.
                     let terms = asked[..n].iter().zip(slopes);

@@ -1,7 +1,7 @@
 //! The instructions of a program, the steps of chains, and the tables that they refer to.
 
 use crate::component::{
-    Along, ConstantCurvature, Curve, Custom, Ellipsoid, Gliding, JointCone, Law, Pivot,
+    Along, ConstantCurvature, Curve, Custom, Ellipsoid, Gliding, JointCone, MotionLaw, Pivot,
 };
 use crate::position::ComponentId;
 use condyle_math::function::{Function, FunctionOfSeveral};
@@ -141,7 +141,7 @@ pub(super) enum AnyLaw {
     Custom(Custom),
 }
 
-impl Law for AnyLaw {
+impl MotionLaw for AnyLaw {
     #[inline]
     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
         match self {
@@ -251,7 +251,7 @@ pub(super) struct CombineCall {
 /// A cone with its registers.
 #[derive(Clone, Debug)]
 pub(super) struct ConeCall {
-    pub component: JointCone,
+    pub law: JointCone,
     pub inputs: Vec<Number>,
     pub outputs: Vec<Number>,
     pub rows: Vec<Number>,

@@ -8,7 +8,6 @@ use super::instruction::Instruction;
 use super::pose::Pose;
 use super::program::{Mode, Program, SizeMismatch};
 use super::tape::Tape;
-use crate::component::MOST_COMBINED;
 use crate::model::SegmentId;
 use condyle_math::{Affine, Mat3, Quat, Twist, Vec3};
 
@@ -193,14 +192,11 @@ impl Program {
             }
             Instruction::Combine { function, output } => {
                 let call = &self.code.combines[function as usize];
-                let n = call.inputs.len();
-                let mut values = [0.0; MOST_COMBINED];
-                for (value, &input) in values.iter_mut().zip(&call.inputs) {
-                    *value = pose.scalars[input.index()];
+                let values = call.inputs.iter().map(|input| pose.scalars[input.index()]);
+                for term in terms {
+                    add(term, call.function.slope_at(values.clone(), term.slope as usize));
                 }
-                let values = &values[..n];
-                pose.scalars[output.index()] = finite(call.function.apply(values));
-                terms.iter().for_each(|t| add(t, call.function.slope(values, t.slope as usize)));
+                pose.scalars[output.index()] = finite(call.function.apply_to(values));
             }
             Instruction::Hold { passive, output, .. } => {
                 pose.scalars[output.index()] = pose.scalars[passive.index()];
@@ -215,7 +211,7 @@ impl Program {
                 for (&output, value) in call.outputs.iter().zip(numbers) {
                     pose.scalars[output.index()] = value;
                 }
-                let rows = call.component.open_rows(&numbers[..call.inputs.len()]);
+                let rows = call.law.open_rows(&numbers[..call.inputs.len()]);
                 for (&register, (value, _)) in call.rows.iter().zip(&rows) {
                     pose.scalars[register.index()] = *value;
                 }

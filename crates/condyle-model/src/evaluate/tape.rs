@@ -5,7 +5,7 @@ use super::deformation::{NO_STRAIN, Rate, sum, times};
 use super::derivative_plan::{DerivativePlan, Start, Term};
 use super::instruction::{Code, ContactCall, Frame};
 use super::rotation_rate::{exp_rate, log_rate};
-use crate::component::{Law, LawDual, MOST_LAW_INPUTS};
+use crate::component::{LawDual, MOST_LAW_INPUTS, MotionLaw};
 use condyle_math::{Affine, Dual, Mat3, Twist, Vec3};
 
 /// Accumulates unit motions to the twists of directions, in the order of the derivative plan.

@@ -5,11 +5,11 @@ use super::posture;
 use super::scaling;
 use super::{
     Closure, ComponentId, Coordinate, CoordinateId, CoordinateKind, JointSet, JointSetId, Marker,
-    Model, NamedComponent, PostureTerm, Segment, SegmentId, SizeGroup, UpAxis,
+    Model, PostureTerm, Segment, SegmentId, SizeGroup, UpAxis,
 };
 use crate::component::{
-    Ball, Combine, Compensate, Component, ConstantCurvature, Depend, Ellipsoid, Map, Pivot, Place,
-    Product, Rotate, Signal, SurfaceAxis, Translate,
+    Ball, Combine, Compensate, Component, ConstantCurvature, Depend, Ellipsoid, Law, Map, Pivot,
+    Place, Product, Rotate, Signal, SurfaceAxis, Translate,
 };
 use crate::limit::Range;
 use condyle_diagnostics::{Error, Read, Severity};
@@ -136,20 +136,23 @@ impl ModelBuilder {
         (index < self.model.segments.len()).then_some(SegmentId(index as u32))
     }
 
-    /// A component; its first output is returned.
-    pub fn component(&mut self, set: JointSetId, name: &str, component: Component) -> Signal {
-        self.model.components.push(NamedComponent {
-            name: name.to_owned(),
-            joint_set: set,
-            component,
-        });
+    /// A component: a law with its inputs, in the order of its ports. Its first output is returned.
+    pub fn component(
+        &mut self,
+        set: JointSetId,
+        name: &str,
+        law: Law,
+        inputs: Vec<Signal>,
+    ) -> Signal {
+        let (name, joint_set) = (name.to_owned(), set);
+        self.model.components.push(Component { name, joint_set, law, inputs });
         Signal::Output(ComponentId(self.model.components.len() as u32 - 1), 0)
     }
 
     /// A component that was made before, to be changed in place: for networks whose components are
     /// read in any order.
     pub fn component_mut(&mut self, id: ComponentId) -> &mut Component {
-        &mut self.model.components[id.index()].component
+        &mut self.model.components[id.index()]
     }
 
     /// A function of a scalar.
@@ -160,8 +163,8 @@ impl ModelBuilder {
         input: impl Into<Signal>,
         function: Function,
     ) -> Signal {
-        let map = Map { input: input.into(), functions: vec![function] };
-        self.component(set, name, Component::Map(map))
+        let map = Map { functions: vec![function] };
+        self.component(set, name, Law::Map(map), vec![input.into()])
     }
 
     /// A function of several scalars.
@@ -172,12 +175,19 @@ impl ModelBuilder {
         inputs: Vec<Signal>,
         function: FunctionOfSeveral,
     ) -> Signal {
-        self.component(set, name, Component::Combine(Combine { inputs, function }))
+        self.component(set, name, Law::Combine(Combine { function }), inputs)
     }
 
-    /// A scalar held between bounds that another sets.
-    pub fn depend(&mut self, set: JointSetId, name: &str, depend: Depend) -> Signal {
-        self.component(set, name, Component::Depend(depend))
+    /// A `passive` scalar held between bounds that a `driver` sets.
+    pub fn depend(
+        &mut self,
+        set: JointSetId,
+        name: &str,
+        passive: impl Into<Signal>,
+        driver: impl Into<Signal>,
+        depend: Depend,
+    ) -> Signal {
+        self.component(set, name, Law::Depend(depend), vec![passive.into(), driver.into()])
     }
 
     /// A rotation about a fixed axis.
@@ -188,12 +198,18 @@ impl ModelBuilder {
         angle: impl Into<Signal>,
         axis: Vec3,
     ) -> Signal {
-        self.component(set, name, Component::Rotate(Rotate { angle: angle.into(), axis }))
+        self.component(set, name, Law::Rotate(Rotate { axis }), vec![angle.into()])
     }
 
     /// A rotation about an axis whose centre moves.
-    pub fn pivot(&mut self, set: JointSetId, name: &str, pivot: Pivot) -> Signal {
-        self.component(set, name, Component::Pivot(pivot))
+    pub fn pivot(
+        &mut self,
+        set: JointSetId,
+        name: &str,
+        angle: impl Into<Signal>,
+        pivot: Pivot,
+    ) -> Signal {
+        self.component(set, name, Law::Pivot(pivot), vec![angle.into()])
     }
 
     /// A translation along a fixed axis.
@@ -204,19 +220,17 @@ impl ModelBuilder {
         distance: impl Into<Signal>,
         axis: Vec3,
     ) -> Signal {
-        let translate = Translate { distance: distance.into(), axis };
-        self.component(set, name, Component::Translate(translate))
+        self.component(set, name, Law::Translate(Translate { axis }), vec![distance.into()])
     }
 
     /// A rotation by an orientation coordinate.
     pub fn ball(&mut self, set: JointSetId, name: &str, orientation: CoordinateId) -> Signal {
-        let ball = Ball { orientation: orientation.into() };
-        self.component(set, name, Component::Ball(ball))
+        self.component(set, name, Law::Ball(Ball), vec![orientation.into()])
     }
 
     /// A fixed transform.
     pub fn place(&mut self, set: JointSetId, name: &str, child_in_parent: Affine) -> Signal {
-        self.component(set, name, Component::Place(Place { child_in_parent }))
+        self.component(set, name, Law::Place(Place { child_in_parent }), vec![])
     }
 
     /// A frame that glides on an ellipsoid with these semi-axes (metres), as in OpenSim.
@@ -227,28 +241,38 @@ impl ModelBuilder {
         angles: [Signal; 3],
         radii: Vec3,
     ) -> Signal {
-        let axis = SurfaceAxis::OpenSim;
-        self.component(set, name, Component::Ellipsoid(Ellipsoid { angles, radii, axis }))
+        let law = Law::Ellipsoid(Ellipsoid { radii, axis: SurfaceAxis::OpenSim });
+        self.component(set, name, law, angles.to_vec())
     }
 
-    /// The end of an arc of constant curvature.
+    /// The end of an arc of constant curvature, bent about x, z and y.
     pub fn constant_curvature(
         &mut self,
         set: JointSetId,
         name: &str,
+        angles: [Signal; 3],
         column: ConstantCurvature,
     ) -> Signal {
-        self.component(set, name, Component::ConstantCurvature(column))
+        self.component(set, name, Law::ConstantCurvature(column), angles.to_vec())
     }
 
-    /// The rotation that undoes what ancestors did, for the joint of a segment.
-    pub fn compensate(&mut self, set: JointSetId, name: &str, compensate: Compensate) -> Signal {
-        self.component(set, name, Component::Compensate(compensate))
+    /// The rotation that undoes the fraction `weight` of what ancestors did, for the joint of a
+    /// segment.
+    pub fn compensate(
+        &mut self,
+        set: JointSetId,
+        name: &str,
+        segment: SegmentId,
+        ancestors: &[SegmentId],
+        weight: f64,
+    ) -> Signal {
+        let inputs = [segment].iter().chain(ancestors).map(|&id| id.into()).collect();
+        self.component(set, name, Law::Compensate(Compensate { weight }), inputs)
     }
 
     /// A product of transforms, the factor nearest to the parent first.
     pub fn product(&mut self, set: JointSetId, name: &str, factors: Vec<Signal>) -> Signal {
-        self.component(set, name, Component::Product(Product { factors }))
+        self.component(set, name, Law::Product(Product), factors)
     }
 
     /// Makes a coordinate follow a scalar instead of what is asked for it.
@@ -329,21 +353,12 @@ impl ModelBuilder {
             Some(error) if broken => return Err(error.contradiction()),
             warnings => warnings.map(Error::into_diagnostics).unwrap_or_default(),
         };
-        for named in &mut self.model.components {
-            match &mut named.component {
-                Component::Rotate(c) => c.axis = c.axis.normalized(),
-                Component::Translate(c) => c.axis = c.axis.normalized(),
-                Component::Scale(c) => {
-                    if let Some(axis) = c.along.axis_mut() {
-                        *axis = axis.normalized();
-                    }
+        for component in &mut self.model.components {
+            for (_, direction) in component.law.directions() {
+                // A direction of length 1 keeps its bits, so that a written model is read as it was.
+                if (direction.norm() - 1.0).abs() > 1e-15 {
+                    *direction = direction.normalized();
                 }
-                Component::Cone(c) => c.normalise(),
-                Component::Shear(c) => {
-                    c.along = c.along.normalized();
-                    c.across = c.across.normalized();
-                }
-                _ => {}
             }
         }
         let (mut stored, mut tangent) = (0u32, 0u32);

@@ -24,7 +24,7 @@ pub(crate) use check::{Node, dependency_order};
 
 pub use crate::position::{ComponentId, CoordinateId, JointSetId, SegmentId};
 
-use crate::component::{Compensate, Component, Signal};
+use crate::component::{Component, PortType, Signal};
 use condyle_diagnostics::{Error, Subject, nearest};
 use condyle_math::{Quat, Vec3};
 use std::collections::HashMap;
@@ -57,17 +57,6 @@ pub struct Marker {
     pub point: Vec3,
 }
 
-/// A component with its name.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NamedComponent {
-    /// Its name, unique in its joint set.
-    pub name: String,
-    /// The joint set it belongs to.
-    pub joint_set: JointSetId,
-    /// What it does.
-    pub component: Component,
-}
-
 /// A character, checked and constant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
@@ -76,7 +65,7 @@ pub struct Model {
     pub(crate) segments: Vec<Segment>,
     pub(crate) coordinates: Vec<Coordinate>,
     pub(crate) joint_sets: Vec<JointSet>,
-    pub(crate) components: Vec<NamedComponent>,
+    pub(crate) components: Vec<Component>,
     pub(crate) markers: Vec<Marker>,
     pub(crate) closures: Vec<Closure>,
     pub(crate) postures: Vec<PostureTerm>,
@@ -114,7 +103,7 @@ impl Model {
     }
 
     /// All components.
-    pub fn components(&self) -> &[NamedComponent] {
+    pub fn components(&self) -> &[Component] {
         &self.components
     }
 
@@ -262,45 +251,46 @@ impl Model {
         }
     }
 
-    /// Everything that a component reads: its ports, and the motions that a compensation undoes.
+    /// Everything that a component reads: the values at its ports, and the motions between the
+    /// segments there.
     pub fn reads(&self, id: ComponentId) -> Vec<Signal> {
-        match &self.components[id.index()].component {
-            Component::Compensate(c) => self
-                .compensated_path(c)
-                .into_iter()
-                .filter_map(|segment| self.segment(segment).motion)
-                .collect(),
-            Component::Contact(c) => {
-                let mut path = self.path_between(c.surface, c.segment);
-                path.retain(|&id| id != c.segment);
-                let motions = path.into_iter().filter_map(|id| self.segment(id).motion);
-                motions.chain(c.before).chain(c.drivers.iter().copied()).collect()
-            }
-            other => other.inputs().into_iter().map(|(_, _, source)| source).collect(),
-        }
+        let component = &self.components[id.index()];
+        let between = self.between(component).into_iter();
+        between
+            .filter_map(|segment| self.segment(segment).motion)
+            .chain(component.values())
+            .collect()
     }
 
-    /// The segments below an ancestor down to a segment; `None` if it is no ancestor.
-    pub(crate) fn path_between(&self, ancestor: SegmentId, segment: SegmentId) -> Vec<SegmentId> {
-        let mut path = vec![];
-        let mut here = Some(segment);
-        while let Some(id) = here
-            && path.len() <= self.segments.len()
-        {
-            if id == ancestor {
-                path.reverse();
-                return path;
+    /// The segments whose motions move the places at a component's ports against each other, those
+    /// of each place from the root outwards.
+    pub(crate) fn between(&self, component: &Component) -> Vec<SegmentId> {
+        let paths: Vec<Vec<SegmentId>> = component
+            .ports()
+            .filter_map(|(port, signal)| {
+                let id = signal.segment()?;
+                let end =
+                    if port.takes == PortType::Joint { self.segment(id).parent } else { Some(id) };
+                Some(self.path_to(end))
+            })
+            .collect();
+        let Some((first, others)) = paths.split_first() else { return vec![] };
+        let shared =
+            |path: &Vec<SegmentId>| first.iter().zip(path).take_while(|(a, b)| a == b).count();
+        let common = others.iter().map(shared).min().unwrap_or(first.len());
+        let mut between = vec![];
+        for id in paths.iter().flat_map(|path| &path[common..]) {
+            if !between.contains(id) {
+                between.push(*id);
             }
-            path.push(id);
-            here = self.segment(id).parent;
         }
-        vec![]
+        between
     }
 
-    /// The segments from the topmost named ancestor of a compensation down to the parent.
-    pub(crate) fn compensated_path(&self, compensate: &Compensate) -> Vec<SegmentId> {
+    /// The segments from the root to a segment, both included; none for the world.
+    pub(crate) fn path_to(&self, segment: Option<SegmentId>) -> Vec<SegmentId> {
         let mut path = vec![];
-        let mut here = self.segment(compensate.segment).parent;
+        let mut here = segment;
         // A cycle of parents is reported elsewhere; here the loop only has to end.
         while let Some(id) = here
             && path.len() < self.segments.len()
@@ -308,8 +298,6 @@ impl Model {
             path.push(id);
             here = self.segment(id).parent;
         }
-        let top = path.iter().rposition(|id| compensate.ancestors.contains(id));
-        path.truncate(top.map_or(0, |top| top + 1));
         path.reverse();
         path
     }
@@ -337,8 +325,8 @@ impl Model {
     }
 
     /// A component as a subject of diagnostics.
-    pub fn component_subject(&self, named: &NamedComponent) -> Subject {
-        Subject::component(&self.joint_sets[named.joint_set.index()].name, &named.name)
+    pub fn component_subject(&self, component: &Component) -> Subject {
+        Subject::component(&self.joint_sets[component.joint_set.index()].name, &component.name)
     }
 
     /// The segment of that name.

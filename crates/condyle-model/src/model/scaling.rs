@@ -14,7 +14,7 @@
 //! changes.
 //!
 //! Lengths inside a joint are the places of [`Place`](crate::component::Place), the centres of
-//! [`Pivot`]s, semi-axes and arcs, and what a [`Map`](crate::component::Map) or a
+//! [`Pivot`](crate::component::Pivot)s, semi-axes and arcs, and what a [`Map`](crate::component::Map) or a
 //! [`Combine`](crate::component::Combine) passes to a [`Translate`](crate::component::Translate). A
 //! component that moves several segments is scaled with the parent of the first of them. A contact
 //! has two bones: its points are scaled with the one that glides, the ellipsoid with the one below.
@@ -24,13 +24,10 @@
 //! scaled, since a patella that rests 4 cm above a joint rests higher above a larger one; so is the
 //! value at rest of a posture term of such distances alone.
 
-use super::{Condition, CoordinateKind, Model, NamedComponent, SegmentId};
-use crate::component::{Centre, Component, ContactPair, Gliding, Pivot, Signal};
+use super::{Condition, CoordinateKind, Model, SegmentId};
+use crate::component::{Component, Law, Signal};
 use condyle_diagnostics::{Diagnostic, Subject};
-use condyle_math::function::{
-    Curve, Function, FunctionOfSeveral, MultivariatePolynomial, PiecewiseLinear, Polynomial,
-    SimmSpline,
-};
+use condyle_math::function::{FunctionOfSeveral, MultivariatePolynomial};
 use condyle_math::{Affine, Vec3};
 use std::collections::{BTreeMap, HashMap};
 
@@ -102,8 +99,13 @@ impl Model {
         }
         let of_component: Vec<f64> =
             self.joints_of_components().iter().map(|j| j.map_or(1.0, of)).collect();
-        for (named, &factor) in model.components.iter_mut().zip(&of_component) {
-            grow_component(&mut named.component, factor, &of);
+        for (component, &factor) in model.components.iter_mut().zip(&of_component) {
+            let segments = component.inputs.iter().filter_map(|signal| signal.segment());
+            let segments: Vec<f64> = segments.map(|id| of(Some(id))).collect();
+            // Untouched where nothing changes, so that factor 1 keeps every bit.
+            if factor != 1.0 || segments.iter().any(|&factor| factor != 1.0) {
+                component.law.grow(factor, &segments);
+            }
         }
         let of_coordinate = model.grow_distances(&of_component);
         for posture in &mut model.postures {
@@ -147,10 +149,9 @@ impl Model {
                     Signal::Coordinate(id) => open.extend(self.coordinate(id).follows),
                     Signal::Output(id, _) if found[id.index()].is_none() => {
                         found[id.index()] = Some(segment.parent);
-                        let inputs = self.components[id.index()].component.inputs();
-                        open.extend(inputs.into_iter().map(|(_, _, source)| source));
+                        open.extend(self.components[id.index()].values());
                     }
-                    Signal::Output(..) => {}
+                    Signal::Output(..) | Signal::Segment(_) => {}
                 }
             }
         }
@@ -165,8 +166,10 @@ impl Model {
         let mut of_coordinate: Vec<Option<f64>> = vec![None; self.coordinates.len()];
         let mut lengths = Lengths::new();
         for (index, &factor) in of_component.iter().enumerate() {
-            let Component::Translate(c) = &self.components[index].component else { continue };
-            let mut source = c.distance;
+            let component = &self.components[index];
+            let Law::Translate(_) = component.law else { continue };
+            let Some(&distance) = component.inputs.first() else { continue };
+            let mut source = distance;
             let mut reader = Reader::Translate(index);
             // Along followers, each of which is met once.
             while let Signal::Coordinate(id) = source {
@@ -194,23 +197,19 @@ impl Model {
         }
         let of_input = |source: Signal| match source {
             Signal::Coordinate(id) => of_coordinate[id.index()],
-            Signal::Output(..) => 1.0,
+            Signal::Output(..) | Signal::Segment(_) => 1.0,
         };
         // Arguments first: a function of a distance takes the scaled distance.
-        for named in &mut self.components {
-            match &mut named.component {
-                Component::Map(c) => {
-                    let argument = of_input(c.input);
-                    c.functions.iter_mut().for_each(|f| stretch(f, 1.0, argument));
+        for Component { law, inputs, .. } in &mut self.components {
+            if let Law::Map(c) = law {
+                let argument = inputs.first().map_or(1.0, |&input| of_input(input));
+                c.functions.iter_mut().for_each(|f| f.stretch(1.0, argument));
+            } else if let Law::Combine(c) = law
+                && let FunctionOfSeveral::Linear { slopes, .. } = &mut c.function
+            {
+                for (slope, &input) in slopes.iter_mut().zip(&*inputs) {
+                    *slope /= of_input(input);
                 }
-                Component::Combine(c) => {
-                    if let FunctionOfSeveral::Linear { slopes, .. } = &mut c.function {
-                        for (slope, &input) in slopes.iter_mut().zip(&c.inputs) {
-                            *slope /= of_input(input);
-                        }
-                    }
-                }
-                _ => {}
             }
         }
         let readers = self.count_readers();
@@ -218,7 +217,7 @@ impl Model {
             let source = Signal::Output(super::ComponentId(index as u32), output);
             let alike = users.iter().all(|(_, factor)| *factor == users[0].1);
             if alike && readers.get(&source) == Some(&users.len()) {
-                grow_output(&mut self.components[index].component, output, users[0].1);
+                grow_output(&mut self.components[index].law, output, users[0].1);
                 continue;
             }
             for (reader, factor) in users.into_iter().filter(|(_, factor)| *factor != 1.0) {
@@ -233,8 +232,7 @@ impl Model {
     /// Distances that reach a translation through a function only.
     fn find_led_distances(&self, lengths: &Lengths, of_coordinate: &mut [Option<f64>]) {
         for (&(index, _), users) in lengths {
-            let inputs = self.components[index].component.inputs();
-            for (_, _, input) in inputs {
+            for input in self.components[index].values() {
                 if let Signal::Coordinate(id) = input
                     && self.coordinate(id).kind == CoordinateKind::Translation
                     && self.coordinate(id).follows.is_none()
@@ -247,8 +245,7 @@ impl Model {
 
     /// How many ports and followers read each output.
     fn count_readers(&self) -> HashMap<Signal, usize> {
-        let ports = self.components.iter().flat_map(|c| c.component.inputs());
-        let ports = ports.map(|(_, _, source)| source);
+        let ports = self.components.iter().flat_map(Component::values);
         let followers = self.coordinates.iter().filter_map(|c| c.follows);
         let mut count = HashMap::new();
         ports.chain(followers).for_each(|source| *count.entry(source).or_insert(0) += 1);
@@ -257,19 +254,19 @@ impl Model {
 
     /// A second output of a function, `factor` times the first.
     fn output_again(&mut self, index: usize, output: u32, factor: f64) -> Option<Signal> {
-        let named = self.components[index].clone();
-        match &mut self.components[index].component {
-            Component::Map(c) => {
+        let component = self.components[index].clone();
+        match &mut self.components[index].law {
+            Law::Map(c) => {
                 let mut function = c.functions.get(output as usize)?.clone();
-                stretch(&mut function, factor, 1.0);
+                function.stretch(factor, 1.0);
                 c.functions.push(function);
                 let last = c.functions.len() as u32 - 1;
                 Some(Signal::Output(super::ComponentId(index as u32), last))
             }
-            Component::Combine(_) => {
-                let name = format!("{}_length", named.name);
-                let mut again = NamedComponent { name, ..named };
-                grow_output(&mut again.component, output, factor);
+            Law::Combine(_) => {
+                let name = format!("{}_length", component.name);
+                let mut again = Component { name, ..component };
+                grow_output(&mut again.law, output, factor);
                 self.components.push(again);
                 let last = self.components.len() as u32 - 1;
                 Some(Signal::Output(super::ComponentId(last), 0))
@@ -281,9 +278,7 @@ impl Model {
     fn connect(&mut self, reader: Reader, source: Signal) {
         match reader {
             Reader::Translate(index) => {
-                if let Component::Translate(c) = &mut self.components[index].component {
-                    c.distance = source;
-                }
+                self.components[index].inputs = vec![source];
             }
             Reader::Follower(index) => self.coordinates[index].follows = Some(source),
         }
@@ -294,65 +289,15 @@ fn grow(frame: &mut Affine, factor: f64) {
     frame.translation = frame.translation * factor;
 }
 
-/// Scales the lengths that a component holds itself.
-fn grow_component(component: &mut Component, factor: f64, of: &impl Fn(Option<SegmentId>) -> f64) {
-    if let Component::Contact(c) = component {
-        let (own, below) = (of(Some(c.segment)), of(Some(c.surface)));
-        // Rebuilt only where it changes, so that factor 1 keeps every bit.
-        if (own, below) == (1.0, 1.0) {
-            return;
-        }
-        let mut place = c.law.ellipsoid_in_surface();
-        grow(&mut place, below);
-        let pair = |p: &ContactPair| ContactPair {
-            first: p.first * own,
-            second: p.second * own,
-            at: p.at,
-        };
-        let pairs = c.law.pairs().iter().map(pair).collect();
-        if let Ok(law) = Gliding::new(place, c.law.radii() * below, c.law.axis(), pairs) {
-            c.law = law;
-        }
-        return;
-    }
-    if factor == 1.0 {
-        return;
-    }
-    match component {
-        Component::Place(c) => grow(&mut c.child_in_parent, factor),
-        Component::Pivot(c) => {
-            let centre = match c.centre() {
-                Centre::Intervals(list) => {
-                    Centre::Intervals(list.iter().map(|(to, at)| (*to, *at * factor)).collect())
-                }
-                Centre::Path(path) => {
-                    let mut path = path.clone();
-                    path.iter_mut().for_each(|spline| grow_spline(spline, factor, 1.0));
-                    Centre::Path(path)
-                }
-            };
-            if let Ok(pivot) = Pivot::new(c.angle, c.axis(), centre) {
-                *c = pivot;
-            }
-        }
-        Component::Ellipsoid(c) => c.radii = c.radii * factor,
-        Component::ConstantCurvature(c) => c.length *= factor,
-        Component::Curve(c) => {
-            c.path.iter_mut().for_each(|spline| grow_spline(spline, factor, 1.0));
-        }
-        _ => {}
-    }
-}
-
 /// One output of a function, `factor` times as large.
-fn grow_output(component: &mut Component, output: u32, factor: f64) {
-    match component {
-        Component::Map(c) => {
+fn grow_output(law: &mut Law, output: u32, factor: f64) {
+    match law {
+        Law::Map(c) => {
             if let Some(function) = c.functions.get_mut(output as usize) {
-                stretch(function, factor, 1.0);
+                function.stretch(factor, 1.0);
             }
         }
-        Component::Combine(c) if factor != 1.0 => match &mut c.function {
+        Law::Combine(c) if factor != 1.0 => match &mut c.function {
             FunctionOfSeveral::Linear { slopes, intercept } => {
                 slopes.iter_mut().for_each(|slope| *slope *= factor);
                 *intercept *= factor;
@@ -387,45 +332,8 @@ fn grow_condition(
         }
         Condition::Coupling { follower, driver, function } => {
             let [result, argument] = [*follower, *driver].map(|id| of_coordinate[id.index()]);
-            stretch(function, result, argument);
+            function.stretch(result, argument);
         }
-    }
-}
-
-/// x ↦ `result` · f(x / `argument`).
-fn stretch(function: &mut Function, result: f64, argument: f64) {
-    if result != 1.0 {
-        function.factor *= result;
-    }
-    if argument == 1.0 {
-        return;
-    }
-    match &mut function.curve {
-        Curve::Constant(_) => {}
-        Curve::Linear { slope, .. } => *slope /= argument,
-        Curve::Polynomial(p) => {
-            let mut power = 1.0;
-            let all = p.ascending().iter().map(|c| {
-                let c = c / power;
-                power *= argument;
-                c
-            });
-            *p = Polynomial::from_ascending(all.collect());
-        }
-        Curve::PiecewiseLinear(p) => {
-            let (x, y) = p.knots().map(|(x, y)| (x * argument, y)).unzip();
-            if let Ok(wider) = PiecewiseLinear::new(x, y) {
-                *p = wider;
-            }
-        }
-        Curve::SimmSpline(s) => grow_spline(s, 1.0, argument),
-    }
-}
-
-fn grow_spline(spline: &mut SimmSpline, result: f64, argument: f64) {
-    let (x, y) = spline.knots().map(|(x, y)| (x * argument, y * result)).unzip();
-    if let Ok(larger) = SimmSpline::new(x, y) {
-        *spline = larger;
     }
 }
 

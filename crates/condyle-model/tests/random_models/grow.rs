@@ -7,9 +7,9 @@ use condyle_math::function::{
 };
 use condyle_math::{Affine, EulerOrder, Mat3, Quat, Scalar, Vec3};
 use condyle_model::component::{
-    Along, Ball, Centre, Compensate, Component, ConstantCurvature, Contact, ContactPair,
-    Curve as Track, Depend, Ellipsoid, Gliding, Heading, JointCone, Law, Pivot, Registry, Scale,
-    Shear, SurfaceAxis, Swinging,
+    Along, Ball, Centre, ConstantCurvature, Contact, ContactPair, Curve as Track, Depend,
+    Ellipsoid, Gliding, Heading, JointCone, Law, MotionLaw, Pivot, Registry, Scale, Shear,
+    SurfaceAxis, Swinging,
 };
 use condyle_model::limit::{Cone, ConePoint, Projection};
 use condyle_model::model::{Closure, Condition};
@@ -151,17 +151,18 @@ fn random_model_with(
             if dice.below(2) == 0 {
                 let surface = ancestors[ancestors.len() - 1];
                 let before = b.rotate(set, "before", scalars[0], Vec3::Z);
-                let drivers = scalars.iter().copied().take(dice.below(3)).collect();
+                let drivers: Vec<Signal> = scalars.iter().copied().take(dice.below(3)).collect();
                 let law = grow_gliding(&mut dice);
-                let contact = Contact { segment, surface, before: Some(before), drivers, law };
-                let glide = b.component(set, "glide", Component::Contact(contact));
+                let ends = [segment.into(), surface.into(), before];
+                let inputs = ends.into_iter().chain(drivers).collect();
+                let contact = Law::Contact(Contact { before: true, law });
+                let glide = b.component(set, "glide", contact, inputs);
                 let motion = b.product(set, "gliding", vec![before, glide]);
                 b.output(set, segment, motion);
                 continue;
             }
             let weight = [1.0, 1.0, 0.5][dice.below(3)];
-            let compensate = Compensate { segment, ancestors, weight };
-            let undo = b.compensate(set, "compensate", compensate);
+            let undo = b.compensate(set, "compensate", segment, &ancestors, weight);
             let own = b.rotate(set, "own", scalars[0], Vec3::X);
             let motion = b.product(set, "compensated", vec![undo, own]);
             b.output(set, segment, motion);
@@ -315,15 +316,14 @@ fn grow_component(
                 1 => Along::Axis(dice.axis()),
                 _ => Along::Volume(dice.axis()),
             };
-            let scale = Component::Scale(Scale { factor, along });
-            transforms.push(b.component(set, &name, scale));
+            transforms.push(b.component(set, &name, Law::Scale(Scale { along }), vec![factor]));
             bent.extend(transforms.last());
         }
         12 => {
             let along = dice.axis();
             let across = along.cross(dice.vector(1.0) + Vec3::new(0.1, 0.2, 3.0)).normalized();
-            let shear = Shear { amount: any(dice), along, across };
-            transforms.push(b.component(set, &name, Component::Shear(shear)));
+            let shear = Law::Shear(Shear { along, across });
+            transforms.push(b.component(set, &name, shear, vec![any(dice)]));
             bent.extend(transforms.last());
         }
         13 => {
@@ -334,14 +334,14 @@ fn grow_component(
             });
             let heading = Heading { forward: dice.axis(), up: Vec3::new(0.1, -0.9, 0.3) };
             let heading = (dice.below(2) == 0).then_some(heading);
-            let track = Track { parameter: any(dice), path: Box::new(path), heading };
-            transforms.push(b.component(set, &name, Component::Curve(track)));
+            let track = Law::Curve(Track { path: Box::new(path), heading });
+            transforms.push(b.component(set, &name, track, vec![any(dice)]));
         }
         14 => {
             let parameters = [("lift".to_owned(), vec![dice.within(0.2)])].into();
             let inputs = vec![any(dice), any(dice)];
-            let cam = registry().make("cam", parameters, inputs).unwrap();
-            transforms.push(b.component(set, &name, Component::Custom(cam)));
+            let cam = registry().make("cam", parameters).unwrap();
+            transforms.push(b.component(set, &name, Law::Custom(cam), inputs));
             bent.extend(transforms.last());
         }
         15 => grow_cone(b, dice, set, &name, scalars, transforms),
@@ -349,11 +349,11 @@ fn grow_component(
             let (passive, driver) = (any(dice), any(dice));
             let (lower, upper) = (dice.function(), dice.function());
             let depend = match dice.below(3) {
-                0 => Depend { passive, driver, lower: Some(lower), upper: None },
-                1 => Depend { passive, driver, lower: None, upper: Some(upper) },
-                _ => Depend { passive, driver, lower: Some(lower), upper: Some(upper) },
+                0 => Depend { lower: Some(lower), upper: None },
+                1 => Depend { lower: None, upper: Some(upper) },
+                _ => Depend { lower: Some(lower), upper: Some(upper) },
             };
-            scalars.push(b.depend(set, &name, depend));
+            scalars.push(b.depend(set, &name, passive, driver, depend));
         }
         0 => {
             let (input, function) = (any(dice), dice.function());
@@ -383,8 +383,8 @@ fn grow_component(
         6 => {
             let angles = [any(dice), any(dice), any(dice)];
             let axis = [SurfaceAxis::OpenSim, SurfaceAxis::Normal][dice.below(2)];
-            let glide = Ellipsoid { angles, radii: Vec3::new(0.07, 0.15, 0.09), axis };
-            transforms.push(b.component(set, &name, Component::Ellipsoid(glide)));
+            let glide = Law::Ellipsoid(Ellipsoid { radii: Vec3::new(0.07, 0.15, 0.09), axis });
+            transforms.push(b.component(set, &name, glide, angles.to_vec()));
         }
         8 => {
             let (angle, axis) = (any(dice), dice.axis());
@@ -399,7 +399,7 @@ fn grow_component(
                     SimmSpline::new(x.clone(), y).unwrap()
                 })))
             };
-            transforms.push(b.pivot(set, &name, Pivot::new(angle, axis, centre).unwrap()));
+            transforms.push(b.pivot(set, &name, angle, Pivot::new(axis, centre).unwrap()));
         }
         7 => {
             // Small inputs keep the arc away from its discontinuity near a right angle.
@@ -407,8 +407,8 @@ fn grow_component(
                 let name = format!("{name}_damped_{}", dice.below(1 << 30));
                 b.map(set, &name, angle, Function::linear(0.1, 0.0))
             });
-            let column = ConstantCurvature { angles, neutral: [0.2, -0.1, 0.05], length: 0.2 };
-            transforms.push(b.constant_curvature(set, &name, column));
+            let column = ConstantCurvature { neutral: [0.2, -0.1, 0.05], length: 0.2 };
+            transforms.push(b.constant_curvature(set, &name, angles, column));
         }
         _ if !transforms.is_empty() => {
             let factors: Vec<Signal> =
@@ -427,7 +427,7 @@ pub(crate) struct Cam {
     pub(crate) lift: f64,
 }
 
-impl Law for Cam {
+impl MotionLaw for Cam {
     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
         let (s, c) = inputs[0].sin_cos();
         let turn = Mat3::rotation_about(Vec3::Z.cast(), (s, c));
@@ -508,10 +508,10 @@ fn grow_cone(
         let rest = dice.vector(1.0) + Vec3::new(0.0, 2.0, 0.0);
         let cone = grow_boundary(dice, rest.normalized());
         let q = b.coordinate(set, &format!("{name}_q"), CoordinateKind::Orientation);
-        let limit = JointCone { of: Swinging::Orientation(q.into()), cone };
-        let orientation = b.component(set, name, Component::Cone(limit));
-        let ball = Component::Ball(Ball { orientation });
-        transforms.push(b.component(set, &format!("{name}_ball"), ball));
+        let limit = Law::Cone(JointCone { of: Swinging::Orientation, cone });
+        let orientation = b.component(set, name, limit, vec![q.into()]);
+        let ball = Law::Ball(Ball);
+        transforms.push(b.component(set, &format!("{name}_ball"), ball, vec![orientation]));
         return;
     }
     let orders = EulerOrder::ALL;
@@ -519,14 +519,15 @@ fn grow_cone(
     let axes = [0, 1, 2].map(|i| order.axis(i));
     let angles = [(); 3].map(|()| scalars[dice.below(scalars.len())]);
     let (of, rest) = if dice.below(3) == 0 {
-        let of = Swinging::Directions([angles[0], angles[1]], [axes[0], axes[1]]);
+        let of = Swinging::Directions([axes[0], axes[1]]);
         (of, axes[2])
     } else {
-        (Swinging::Angles(angles, axes), dice.axis().normalized())
+        (Swinging::Angles(axes), dice.axis().normalized())
     };
-    let count = if matches!(of, Swinging::Directions(..)) { 2 } else { 3 };
+    let count = if matches!(of, Swinging::Directions(_)) { 2 } else { 3 };
     let cone = grow_boundary(dice, rest);
-    let limit = b.component(set, name, Component::Cone(JointCone { of, cone }));
+    let inputs = angles[..count as usize].to_vec();
+    let limit = b.component(set, name, Law::Cone(JointCone { of, cone }), inputs);
     let Signal::Output(id, _) = limit else { return };
     for k in 0..count {
         let turn = b.rotate(set, &format!("{name}_{k}"), Signal::Output(id, k), axes[k as usize]);

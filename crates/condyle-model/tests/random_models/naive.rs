@@ -3,7 +3,8 @@
 use super::scan;
 use condyle_math::{Affine, EulerOrder, Mat3, Quat, Vec3};
 use condyle_model::component::{
-    Along, Centre, Component, Contact, ContactPair, JointCone, Law, SurfaceAxis, Swinging,
+    Along, Centre, Component, ContactPair, Gliding, JointCone, Law, MotionLaw, SurfaceAxis,
+    Swinging,
 };
 use condyle_model::model::ComponentId;
 use condyle_model::{CoordinateId, Mode, Model, SegmentId, Signal};
@@ -22,13 +23,10 @@ pub(crate) struct Evaluator<'a> {
 
 /// The sources that a limit component limits: one for each of its outputs.
 fn held(model: &Model, limit: ComponentId) -> Vec<Signal> {
-    match &model.components()[limit.index()].component {
-        Component::Depend(c) => vec![c.passive],
-        Component::Cone(c) => match &c.of {
-            Swinging::Angles(sources, _) => sources.to_vec(),
-            Swinging::Directions(sources, _) => sources.to_vec(),
-            Swinging::Orientation(source) => vec![*source],
-        },
+    let component = &model.components()[limit.index()];
+    match component.law {
+        Law::Depend(_) => component.at("passive").to_vec(),
+        Law::Cone(_) => component.inputs.clone(),
         _ => vec![],
     }
 }
@@ -94,6 +92,7 @@ impl<'a> Evaluator<'a> {
                 let source = *held(self.model, limit).get(output as usize)?;
                 self.limits_between(id, source).map(|depth| depth + 1)
             }
+            Signal::Segment(_) => None,
         }
     }
 
@@ -102,19 +101,23 @@ impl<'a> Evaluator<'a> {
         match source {
             Signal::Coordinate(id) if self.model.coordinate(id).follows.is_none() => self.asked(id),
             Signal::Coordinate(id) => self.coordinate(id),
-            Signal::Output(id, output) => match &self.model.components()[id.index()].component {
-                Component::Cone(cone) => self.cone(cone, output),
-                _ => vec![self.scalar(source)],
-            },
+            Signal::Output(id, output) => {
+                let component = &self.model.components()[id.index()];
+                match &component.law {
+                    Law::Cone(cone) => self.cone(cone, &component.inputs, output),
+                    _ => vec![self.scalar(source)],
+                }
+            }
+            Signal::Segment(_) => panic!("a segment is no number"),
         }
     }
 
     /// One output of a cone: the legal rotation decomposed into Euler angles, with all wraps tried.
-    fn cone(&self, cone: &JointCone, output: u32) -> Vec<f64> {
+    fn cone(&self, cone: &JointCone, sources: &[Signal], output: u32) -> Vec<f64> {
         let limit = &cone.cone;
-        let (sources, axes) = match &cone.of {
-            Swinging::Orientation(source) => {
-                let q = self.numbers(*source);
+        let axes = match cone.of {
+            Swinging::Orientation => {
+                let q = self.numbers(sources[0]);
                 let q = Quat::from(<[f64; 4]>::try_from(q).unwrap());
                 let legal = limit.legal(q.normalized().to_mat3());
                 if self.mode == Mode::Open || !legal.moved {
@@ -124,8 +127,8 @@ impl<'a> Evaluator<'a> {
                 let same: f64 = found.iter().zip(q.to_array()).map(|(a, b)| a * b).sum();
                 return found.map(|x| x * same.signum()).to_vec();
             }
-            Swinging::Angles(sources, axes) => (sources.to_vec(), *axes),
-            Swinging::Directions(sources, [a, b]) => (sources.to_vec(), [*a, *b, limit.rest()]),
+            Swinging::Angles(axes) => axes,
+            Swinging::Directions([a, b]) => [a, b, limit.rest()],
         };
         let asked: Vec<f64> = sources.iter().map(|&s| self.scalar(s)).collect();
         if self.mode == Mode::Open {
@@ -181,44 +184,42 @@ impl<'a> Evaluator<'a> {
     }
 
     fn scalar(&self, source: Signal) -> f64 {
-        match source {
-            Signal::Coordinate(_) => self.numbers(source)[0],
-            Signal::Output(id, output) => match &self.model.components()[id.index()].component {
-                Component::Map(map) => {
-                    let x = self.scalar(map.input);
-                    map.functions[output as usize].value_and_slope(x).0
+        let Signal::Output(id, output) = source else { return self.numbers(source)[0] };
+        let component = &self.model.components()[id.index()];
+        let input = |k: usize| self.scalar(component.inputs[k]);
+        match &component.law {
+            Law::Map(map) => map.functions[output as usize].value_and_slope(input(0)).0,
+            Law::Depend(depend) => {
+                let (mut x, d) = (input(0), input(1));
+                let bound = |f: &condyle_math::function::Function| f.value_and_slope(d).0;
+                if self.mode == Mode::Posed {
+                    x = depend.lower.as_ref().map_or(x, |f| x.max(bound(f)));
+                    x = depend.upper.as_ref().map_or(x, |f| x.min(bound(f)));
                 }
-                Component::Depend(depend) => {
-                    let (mut x, d) = (self.scalar(depend.passive), self.scalar(depend.driver));
-                    let bound = |f: &condyle_math::function::Function| f.value_and_slope(d).0;
-                    if self.mode == Mode::Posed {
-                        x = depend.lower.as_ref().map_or(x, |f| x.max(bound(f)));
-                        x = depend.upper.as_ref().map_or(x, |f| x.min(bound(f)));
-                    }
-                    x
-                }
-                Component::Combine(combine) => {
-                    let x: Vec<f64> = combine.inputs.iter().map(|&s| self.scalar(s)).collect();
-                    combine.function.apply(&x)
-                }
-                Component::Cone(cone) => self.cone(cone, output)[0],
-                other => panic!("{} is no scalar", other.kind()),
-            },
+                x
+            }
+            Law::Combine(combine) => {
+                let x: Vec<f64> = component.inputs.iter().map(|&s| self.scalar(s)).collect();
+                combine.function.apply(&x)
+            }
+            Law::Cone(cone) => self.cone(cone, &component.inputs, output)[0],
+            other => panic!("{} is no scalar", other.kind().name),
         }
     }
 
     /// The two rotations of a contact, found by scanning.
-    fn contact(&self, c: &Contact) -> Affine {
-        let law = &c.law;
-        let segment = self.model.segment(c.segment);
+    fn contact(&self, component: &Component, law: &Gliding) -> Affine {
+        let segment_at = |port| component.segments_at(port).next().expect("a segment");
+        let segment = self.model.segment(segment_at("segment"));
         let parent = self.segment(segment.parent.expect("below its surface"));
-        let before = c.before.map_or(Affine::IDENTITY, |source| self.transform(source));
-        let surface = self.segment(c.surface) * law.ellipsoid_in_surface();
+        let before = component.at("before").first();
+        let before = before.map_or(Affine::IDENTITY, |&source| self.transform(source));
+        let surface = self.segment(segment_at("surface")) * law.ellipsoid_in_surface();
         // What is above the surface may stretch it; what lies between is rigid.
         let back = surface.linear.inverse();
         let back = Affine::new(back, -(back * surface.translation));
         let pose = back * parent * segment.joint_in_parent * before;
-        let drivers: Vec<f64> = c.drivers.iter().map(|&d| self.scalar(d)).collect();
+        let drivers: Vec<f64> = component.at("drivers").iter().map(|&d| self.scalar(d)).collect();
         // Points and axis are in the segment's frame; the rotations are in its joint frame.
         let joint = segment.joint_in_segment.rigid_inverse();
         let [first, second] = self.blended(law.pairs(), &drivers).map(|point| joint * point);
@@ -260,16 +261,18 @@ impl<'a> Evaluator<'a> {
 
     fn transform(&self, source: Signal) -> Affine {
         let Signal::Output(id, _) = source else { panic!("a coordinate is no transform") };
-        match &self.model.components()[id.index()].component {
-            Component::Rotate(c) => {
-                let angle = self.scalar(c.angle);
+        let component = &self.model.components()[id.index()];
+        let input = |k: usize| self.scalar(component.inputs[k]);
+        match &component.law {
+            Law::Rotate(c) => {
+                let angle = input(0);
                 Affine::from_rotation(Quat::from_axis_angle(c.axis, angle).to_mat3())
             }
-            Component::Translate(c) => Affine::from_translation(c.axis * self.scalar(c.distance)),
-            Component::Pivot(c) => match c.centre() {
+            Law::Translate(c) => Affine::from_translation(c.axis * input(0)),
+            Law::Pivot(c) => match c.centre() {
                 // Interval by interval, the one that holds 0 first.
                 Centre::Intervals(list) => {
-                    let angle = self.scalar(c.angle);
+                    let angle = input(0);
                     let mut motion = Affine::IDENTITY;
                     let (mut from, mut begin) = (0, f64::NEG_INFINITY);
                     let mut pieces = vec![];
@@ -295,32 +298,34 @@ impl<'a> Evaluator<'a> {
                     }
                     motion
                 }
-                Centre::Path(_) => c.transform(&[self.scalar(c.angle)]),
+                Centre::Path(_) => c.transform(&[input(0)]),
             },
-            Component::Ball(c) => {
-                let q: [f64; 4] = self.numbers(c.orientation).try_into().unwrap();
+            Law::Ball(_) => {
+                let q: [f64; 4] = self.numbers(component.inputs[0]).try_into().unwrap();
                 Affine::from_rotation(Quat::from(q).normalized().to_mat3())
             }
-            Component::Place(c) => c.child_in_parent,
-            Component::Product(c) => {
-                c.factors.iter().fold(Affine::IDENTITY, |t, &f| t * self.transform(f))
+            Law::Place(c) => c.child_in_parent,
+            Law::Product(_) => {
+                component.inputs.iter().fold(Affine::IDENTITY, |t, &f| t * self.transform(f))
             }
-            Component::Compensate(c) => {
+            Law::Compensate(c) => {
                 // Up from the parent to the topmost named ancestor, both paths side by side.
                 let mut chain = vec![];
-                let mut here = self.model.segment(c.segment).parent;
+                let moved = component.segments_at("segment").next().expect("a segment");
+                let ancestors: Vec<SegmentId> = component.segments_at("ancestors").collect();
+                let mut here = self.model.segment(moved).parent;
                 while let Some(id) = here {
                     chain.push(id);
                     here = self.model.segment(id).parent;
                 }
-                let Some(top) = chain.iter().rposition(|id| c.ancestors.contains(id)) else {
+                let Some(top) = chain.iter().rposition(|id| ancestors.contains(id)) else {
                     return Affine::IDENTITY;
                 };
                 let (mut is, mut should) = (Mat3::IDENTITY, Mat3::IDENTITY);
                 for id in chain[..=top].iter().rev() {
                     let s = self.model.segment(*id);
                     let motion = s.motion.map_or(Mat3::IDENTITY, |m| self.transform(m).linear);
-                    let left = if c.ancestors.contains(id) {
+                    let left = if ancestors.contains(id) {
                         let turn = Quat::from_mat3(motion).log() * (1.0 - c.weight);
                         Quat::exp(turn).to_mat3()
                     } else {
@@ -330,11 +335,11 @@ impl<'a> Evaluator<'a> {
                     is = is * s.joint_in_parent.linear * motion * back;
                     should = should * s.joint_in_parent.linear * left * back;
                 }
-                let joint = self.model.segment(c.segment).joint_in_parent.linear;
+                let joint = self.model.segment(moved).joint_in_parent.linear;
                 Affine::from_rotation(joint.transpose() * is.transpose() * should * joint)
             }
-            Component::Ellipsoid(c) => {
-                let [a, b, g] = c.angles.map(|s| self.scalar(s));
+            Law::Ellipsoid(c) => {
+                let [a, b, g] = [0, 1, 2].map(input);
                 let r = Mat3::rotation_x(a) * Mat3::rotation_y(b) * Mat3::rotation_z(g);
                 let n = r * Vec3::Z;
                 let [rx, ry, rz] = c.radii.to_array();
@@ -353,9 +358,9 @@ impl<'a> Evaluator<'a> {
                     },
                 )
             }
-            Component::Scale(c) => {
+            Law::Scale(c) => {
                 // As the source has it for a principal axis, in a frame turned so that it is one.
-                let s = self.scalar(c.factor).max(1e-6);
+                let s = input(0).max(1e-6);
                 let (axis, diagonal) = match c.along {
                     Along::Everywhere => (Vec3::X, [s, s, s]),
                     Along::Axis(axis) => (axis, [s, 1.0, 1.0]),
@@ -370,14 +375,13 @@ impl<'a> Evaluator<'a> {
                 );
                 Affine::new(turn * stretch * turn.transpose(), Vec3::ZERO)
             }
-            Component::Shear(c) => {
-                let slide =
-                    |unit: Vec3| unit + c.along * (self.scalar(c.amount) * c.across.dot(unit));
+            Law::Shear(c) => {
+                let slide = |unit: Vec3| unit + c.along * (input(0) * c.across.dot(unit));
                 let [x, y, z] = Vec3::UNITS.map(slide);
                 Affine::new(Mat3::from_columns(x, y, z), Vec3::ZERO)
             }
-            Component::Curve(c) => {
-                let u = self.scalar(c.parameter);
+            Law::Curve(c) => {
+                let u = input(0);
                 let along = |order: usize| {
                     Vec3::from([0, 1, 2].map(|k: usize| c.path[k].derivatives(u)[order]))
                 };
@@ -395,17 +399,17 @@ impl<'a> Evaluator<'a> {
                 let roll = Quat::from_axis_angle(tangent, roll).to_mat3();
                 Affine::new(roll * swing, along(0))
             }
-            Component::Custom(c) => {
+            Law::Custom(c) => {
                 // The formula of the law, written out.
-                let [angle, wave] = [0, 1].map(|i: usize| self.scalar(c.inputs[i]));
+                let [angle, wave] = [0, 1].map(input);
                 let lift = c.parameters["lift"][0] * (1.0 - angle.cos());
                 let turn = Quat::from_axis_angle(Vec3::Z, angle).to_mat3();
                 let wide = Mat3::from_columns(Vec3::X * (1.0 + 0.2 * wave.sin()), Vec3::Y, Vec3::Z);
                 Affine::new(turn * wide, Vec3::Y * lift)
             }
-            Component::Contact(c) => self.contact(c),
-            Component::ConstantCurvature(c) => c.transform(&c.angles.map(|s| self.scalar(s))),
-            other => panic!("{} is no transform", other.kind()),
+            Law::Contact(c) => self.contact(component, &c.law),
+            Law::ConstantCurvature(c) => c.transform(&[0, 1, 2].map(input)),
+            other => panic!("{} is no transform", other.kind().name),
         }
     }
 

@@ -7,7 +7,7 @@ use condyle_math::function::Function;
 use condyle_math::{Quat, Vec3};
 use condyle_model::component::{Along, Scale};
 use condyle_model::model::{Closure, Condition};
-use condyle_model::{Component, Mode, ModelBuilder, Pose, Program, SegmentId};
+use condyle_model::{Law, Mode, ModelBuilder, Pose, Program, SegmentId};
 
 /// Numbers between -1 and 1: SplitMix64 (Steele, Lea & Flood 2014).
 struct Dice(u64);
@@ -48,8 +48,8 @@ fn tree(seed: u64, tied_to: Vec3) -> Model {
             2 => {
                 let set = b.joint_set(&joint);
                 let factor = b.coordinate(set, "q", CoordinateKind::Scale);
-                let scale = Scale { factor: factor.into(), along: Along::Axis(axis) };
-                let motion = b.component(set, "stretch", Component::Scale(scale));
+                let scale = Law::Scale(Scale { along: Along::Axis(axis) });
+                let motion = b.component(set, "stretch", scale, vec![factor.into()]);
                 b.output(set, segment, motion);
             }
             _ => drop(b.hinge(&joint, segment, "q", axis)),

@@ -110,9 +110,9 @@ fn leader_keys<'k>(model: &Model, id: CoordinateId, keys: &'k [String]) -> Vec<&
         match source {
             Signal::Coordinate(leader) => leaders.push(leader),
             Signal::Output(component, _) => {
-                let component = &model.components()[component.index()].component;
-                open.extend(component.inputs().into_iter().map(|(_, _, source)| source));
+                open.extend(model.components()[component.index()].values());
             }
+            Signal::Segment(_) => {}
         }
     }
     leaders.sort_unstable();

@@ -1,10 +1,9 @@
 //! A model as written: numbers are read, names are not resolved yet.
 
-use super::blueprint::Blueprint;
 use crate::document::texts::{Name, Spot};
 use condyle_math::function::Function;
 use condyle_math::{Affine, Vec3};
-use condyle_model::{CoordinateKind, Range, UpAxis};
+use condyle_model::{CoordinateKind, Law, Range, UpAxis};
 use std::collections::HashSet;
 
 #[derive(Default)]
@@ -68,7 +67,8 @@ impl CoordinateDraft {
 pub(super) struct ComponentDraft {
     pub(super) set: String,
     pub(super) name: Name,
-    pub(super) blueprint: Blueprint,
+    pub(super) law: Law,
+    /// The names at its ports, in the order of [`Law::ports`].
     pub(super) ports: Vec<Name>,
 }
 

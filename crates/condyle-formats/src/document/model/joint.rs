@@ -1,6 +1,5 @@
 //! Plain joints: each is expanded to a joint set of coordinates and components.
 
-use super::blueprint::Blueprint;
 use super::draft::{ComponentDraft, CoordinateDraft, Draft, OutputDraft};
 use super::keys;
 use super::mirror::escaped;
@@ -11,8 +10,8 @@ use crate::document::tree::{Entry, Value};
 use condyle_diagnostics::did_you_mean;
 use condyle_math::function::Function;
 use condyle_math::{EulerOrder, Vec3};
-use condyle_model::CoordinateKind;
-use condyle_model::component::Along;
+use condyle_model::component::{Along, Ball, Map, Rotate, Scale, Translate};
+use condyle_model::{CoordinateKind, Law};
 use std::collections::HashSet;
 
 /// The coordinates and components of a plain joint.
@@ -27,7 +26,7 @@ struct Expansion {
 /// One component of a joint, named for its first coordinate.
 struct Part {
     prefix: &'static str,
-    blueprint: Blueprint,
+    law: Law,
     inputs: Vec<Input>,
     /// Whether it is a factor of the motion, or only an input of another part.
     moves: bool,
@@ -40,29 +39,23 @@ enum Input {
 
 impl Expansion {
     /// Adds a coordinate and the factor that it drives.
-    fn with(
-        mut self,
-        name: &str,
-        kind: CoordinateKind,
-        prefix: &'static str,
-        blueprint: Blueprint,
-    ) -> Self {
+    fn with(mut self, name: &str, kind: CoordinateKind, prefix: &'static str, law: Law) -> Self {
         let inputs = vec![Input::Coordinate(self.coordinates.len())];
         self.coordinates.push((name.to_owned(), kind));
-        self.parts.push(Part { prefix, blueprint, inputs, moves: true });
+        self.parts.push(Part { prefix, law, inputs, moves: true });
         self
     }
 
     fn turn(self, name: &str, axis: Vec3) -> Self {
-        self.with(name, CoordinateKind::Rotation, "about", Blueprint::Rotate(axis))
+        self.with(name, CoordinateKind::Rotation, "about", Law::Rotate(Rotate { axis }))
     }
 
     fn slide(self, name: &str, axis: Vec3) -> Self {
-        self.with(name, CoordinateKind::Translation, "along", Blueprint::Translate(axis))
+        self.with(name, CoordinateKind::Translation, "along", Law::Translate(Translate { axis }))
     }
 
     fn ball(self) -> Self {
-        self.with("orientation", CoordinateKind::Orientation, "about", Blueprint::Ball)
+        self.with("orientation", CoordinateKind::Orientation, "about", Law::Ball(Ball))
     }
 
     fn turns(self, axes: [Vec3; 3]) -> Self {
@@ -75,20 +68,21 @@ impl Expansion {
     /// A turn, and a slide along the same axis by `pitch` for each whole turn.
     fn screw(axis: Vec3, pitch: f64) -> Self {
         let mut expansion = Self::default().turn("angle", axis);
-        let blueprint = Blueprint::Map(vec![Function::linear(pitch / std::f64::consts::TAU, 0.0)]);
+        let functions = vec![Function::linear(pitch / std::f64::consts::TAU, 0.0)];
+        let law = Law::Map(Map { functions });
         let inputs = vec![Input::Coordinate(0)];
-        expansion.parts.push(Part { prefix: "pitch_of", blueprint, inputs, moves: false });
-        let (blueprint, inputs) = (Blueprint::Translate(axis), vec![Input::Part(1)]);
-        expansion.parts.push(Part { prefix: "along", blueprint, inputs, moves: true });
+        expansion.parts.push(Part { prefix: "pitch_of", law, inputs, moves: false });
+        let (law, inputs) = (Law::Translate(Translate { axis }), vec![Input::Part(1)]);
+        expansion.parts.push(Part { prefix: "along", law, inputs, moves: true });
         expansion
     }
 
     /// One component with three angles.
-    fn glide(blueprint: Blueprint) -> Self {
+    fn glide(law: Law) -> Self {
         let kind = CoordinateKind::Rotation;
         let coordinates = ["about_x", "about_y", "about_z"].map(|name| (name.to_owned(), kind));
         let inputs = (0..3).map(Input::Coordinate).collect();
-        let parts = vec![Part { prefix: "on_surface", blueprint, inputs, moves: true }];
+        let parts = vec![Part { prefix: "on_surface", law, inputs, moves: true }];
         Self { coordinates: coordinates.to_vec(), parts }
     }
 }
@@ -162,7 +156,7 @@ impl ModelReader<'_> {
             draft.components.push(ComponentDraft {
                 set: set.text.clone(),
                 name: here(name.clone()),
-                blueprint: part.blueprint,
+                law: part.law,
                 ports: part.inputs.iter().map(|i| here(input(i))).collect(),
             });
         }
@@ -262,7 +256,7 @@ impl ModelReader<'_> {
                         name,
                         CoordinateKind::Scale,
                         "by",
-                        Blueprint::Scale(Along::Axis(axis)),
+                        Law::Scale(Scale { along: Along::Axis(axis) }),
                     )
                 })
             }

@@ -1,8 +1,10 @@
 //! The keys of each table of a model document.
 
+use super::read::component_keys;
 use crate::document::function::{FUNCTION, SEVERAL};
 use crate::document::head::HEAD;
 use crate::document::template::TEMPLATE;
+use condyle_model::Law;
 
 /// The keys at the top of a document, beside those of its head.
 pub(super) const TOP: &[&str] = &[
@@ -93,47 +95,6 @@ pub(super) const CONE_POINT: &[&str] = &["direction", "twist"];
 pub(super) const CONTACT_PAIR: &[&str] = &["first", "second", "at"];
 pub(super) const COUPLING: &[&str] = &["follower", "driver", "function"];
 
-/// The kinds of components with their keys.
-pub(super) const COMPONENTS: &[(&str, &[&str])] = &[
-    ("map", &["input", "function", "functions", "in", "out"]),
-    ("combine", &["inputs", "function"]),
-    ("depend", &["passive", "driver", "lower", "upper"]),
-    (
-        "cone",
-        &[
-            "angles",
-            "axes",
-            "order",
-            "orientation",
-            "rest",
-            "points",
-            "twist",
-            "subdivisions",
-            "projection",
-        ],
-    ),
-    (
-        "contact",
-        &[
-            "segment", "surface", "at", "turn", "order", "matrix", "radii", "axis", "before",
-            "drivers", "in", "pairs",
-        ],
-    ),
-    ("rotate", &["angle", "axis"]),
-    ("pivot", &["angle", "axis", "centres", "path"]),
-    ("translate", &["distance", "axis"]),
-    ("ball", &["orientation"]),
-    ("place", &["at", "turn", "order", "matrix"]),
-    ("ellipsoid", &["about_x", "about_y", "about_z", "radii", "surface_axis"]),
-    ("constant_curvature", &["about_x", "about_z", "about_y", "neutral", "length"]),
-    ("compensate", &["segment", "ancestors", "weight"]),
-    ("scale", &["factor", "axis", "volume"]),
-    ("shear", &["amount", "along", "across"]),
-    ("curve", &["parameter", "in", "path", "forward", "up"]),
-    ("custom", &["law", "inputs", "parameters"]),
-    ("product", &["factors"]),
-];
-
 /// Every table of a model document with its keys, for manuals and schemas.
 ///
 /// Components are listed by kind, such as `component.rotate`.
@@ -162,11 +123,13 @@ pub fn keys() -> Vec<(String, Vec<&'static str>)> {
         ("function", FUNCTION),
         ("function_of_several", SEVERAL),
     ];
-    let components = COMPONENTS.iter().map(|(kind, keys)| (format!("component.{kind}"), *keys));
+    let components = Law::KINDS.iter().map(|kind| {
+        let keys: Vec<&'static str> = component_keys(kind).collect();
+        (format!("component.{}", kind.name), keys)
+    });
     plain
         .into_iter()
-        .map(|(table, keys)| (table.to_owned(), keys))
+        .map(|(table, keys)| (table.to_owned(), keys.to_vec()))
         .chain(components)
-        .map(|(table, keys)| (table, keys.to_vec()))
         .collect()
 }

@@ -5,33 +5,24 @@
 //! of a turn -D·a (it is a pseudovector). Only an orientation changes its value, since it *is* a
 //! rotation: (v, w) on one side is (-D·v, w) on the other.
 //!
-//! A component whose formula singles out an axis is mirrored by the same component and others:
-//!
-//! - an ellipsoid mirrored at x or y has two of its angles negated; at z, which reverses its pole,
-//!   D·Rx(a)·Ry(b)·Rz(c)·D = Rx(π-a)·Ry(b)·Rz(-c)·Rx(π);
-//! - a column has its angles negated; its rest direction y cannot be mirrored at y.
-//!
-//! A cone's directions become D·d, the axes of its angles -D·a, and its bounds of twist \[-hi, -lo\]:
-//! D·R(r, τ)·D = R(D·r, -τ). Factors and amounts of scales and shears keep their values with D·a. The
-//! mirror image of a custom law is not known, so that such a component cannot be mirrored.
+//! What becomes of a law is its own matter ([`Law::mirror`]): most are mirrored by the same law with
+//! other directions, some need other values at their ports or a transform after them, which are
+//! components of their own here. The mirror image of a custom law is not known, so that such a component
+//! cannot be mirrored.
 
-use super::blueprint::{Blueprint, Held};
 use super::draft::{
     ClosureDraft, ComponentDraft, ConditionDraft, CoordinateDraft, Draft, Holder, MarkerDraft,
     OutputDraft, PostureDraft, SegmentDraft,
 };
 use crate::document::texts::{Name, Texts};
-use condyle_math::function::{Function, SimmSpline};
-use condyle_math::{Affine, Mat3, Vec3};
-use condyle_model::CoordinateKind;
-use condyle_model::component::{Along, Centre, ContactPair, Gliding, Heading};
-use condyle_model::limit::{Cone, ConePoint};
+use condyle_math::Vec3;
+use condyle_math::function::Function;
+use condyle_model::component::{Map, Mirrored, Place, PortType, Product, Reflection};
+use condyle_model::{CoordinateKind, Law};
 use std::collections::HashSet;
-use std::f64::consts::PI;
 
 pub(super) struct Mirror {
-    /// The axis normal to the plane.
-    pub(super) axis: usize,
+    pub(super) reflection: Reflection,
     /// How the names of the written side end, and those of the mirrored side.
     pub(super) from: String,
     pub(super) to: String,
@@ -59,8 +50,8 @@ impl Mirror {
             |s| SegmentDraft {
                 name: self.renamed(&s.name),
                 parent: s.parent.as_ref().map(|p| self.renamed(p)),
-                in_parent: self.frame(s.in_parent),
-                in_itself: self.frame(s.in_itself),
+                in_parent: self.reflection.frame(s.in_parent),
+                in_itself: self.reflection.frame(s.in_itself),
             },
         );
         add(
@@ -70,7 +61,7 @@ impl Mirror {
                 let mut default = c.default;
                 if c.kind == CoordinateKind::Orientation {
                     let [x, y, z, w] = c.default;
-                    let v = self.turning(Vec3::new(x, y, z));
+                    let v = self.reflection.turning(Vec3::new(x, y, z));
                     default = [v.x, v.y, v.z, w];
                 }
                 CoordinateDraft {
@@ -110,7 +101,7 @@ impl Mirror {
             |m| MarkerDraft {
                 name: self.renamed(&m.name),
                 segment: self.holder(&m.segment),
-                point: self.point(m.point),
+                point: self.reflection.point(m.point),
             },
         );
         add(
@@ -154,81 +145,15 @@ impl Mirror {
         holder.as_ref().map(|n| self.renamed(n))
     }
 
-    fn point(&self, p: Vec3) -> Vec3 {
-        let mut p = p.to_array();
-        p[self.axis] = -p[self.axis];
-        Vec3::from(p)
-    }
-
-    fn turning(&self, axis: Vec3) -> Vec3 {
-        -self.point(axis)
-    }
-
-    fn frame(&self, frame: Affine) -> Affine {
-        // D·M·D changes the sign of entries that mix the reversed axis with another.
-        let column =
-            |c: usize, v: Vec3| if c == self.axis { -self.point(v) } else { self.point(v) };
-        let m = frame.linear;
-        let linear = Mat3::from_columns(column(0, m.x), column(1, m.y), column(2, m.z));
-        Affine::new(linear, self.point(frame.translation))
-    }
-
-    fn centre(&self, centre: &Centre) -> Centre {
-        match centre {
-            Centre::Intervals(list) => {
-                Centre::Intervals(list.iter().map(|(to, at)| (*to, self.point(*at))).collect())
-            }
-            Centre::Path(splines) => Centre::Path(self.path(splines)),
-        }
-    }
-
-    fn path(&self, splines: &[SimmSpline; 3]) -> Box<[SimmSpline; 3]> {
-        let mut splines = Box::new(splines.clone());
-        let (x, y) = splines[self.axis].knots().map(|(x, y)| (x, -y)).unzip();
-        if let Ok(reversed) = SimmSpline::new(x, y) {
-            splines[self.axis] = reversed;
-        }
-        splines
-    }
-
-    /// The mirrored cone; `None` if rounding makes it invalid.
-    fn cone(&self, cone: &Cone) -> Option<Cone> {
-        let twist = |bounds: Option<[f64; 2]>| bounds.map(|[low, high]| [-high, -low]);
-        let point =
-            |p: &ConePoint| ConePoint { direction: self.point(p.direction), twist: twist(p.twist) };
-        let points = cone.points().iter().map(point).collect();
-        let (rest, at_rest) = (self.point(cone.rest()), twist(cone.twist_at_rest()));
-        Cone::new(rest, at_rest, points, cone.subdivisions(), cone.projection()).ok()
-    }
-
-    fn held(&self, held: &Held) -> Held {
-        match held {
-            Held::Three(axes) => Held::Three(axes.map(|a| self.turning(a))),
-            Held::Two(axes) => Held::Two(axes.map(|a| self.turning(a))),
-            Held::Orientation => Held::Orientation,
-        }
-    }
-
-    fn gliding(&self, gliding: &Gliding) -> Option<Gliding> {
-        let pair = |p: &ContactPair| ContactPair {
-            first: self.point(p.first),
-            second: self.point(p.second),
-            at: p.at,
-        };
-        let pairs = gliding.pairs().iter().map(pair).collect();
-        let pose = self.frame(gliding.ellipsoid_in_surface());
-        Gliding::new(pose, gliding.radii(), self.turning(gliding.axis()), pairs).ok()
-    }
-
     fn condition(&self, condition: &ConditionDraft) -> ConditionDraft {
         let points = |at: &[(Holder, Vec3); 2]| {
-            at.each_ref().map(|(holder, p)| (self.holder(holder), self.point(*p)))
+            at.each_ref().map(|(holder, p)| (self.holder(holder), self.reflection.point(*p)))
         };
         match condition {
             ConditionDraft::Points(at) => ConditionDraft::Points(points(at)),
             ConditionDraft::Distance(at, d) => ConditionDraft::Distance(points(at), *d),
             ConditionDraft::Frames(at) => ConditionDraft::Frames(
-                at.each_ref().map(|(holder, f)| (self.holder(holder), self.frame(*f))),
+                at.each_ref().map(|(holder, f)| (self.holder(holder), self.reflection.frame(*f))),
             ),
             ConditionDraft::Coupling { follower, driver, function } => ConditionDraft::Coupling {
                 follower: self.port(follower),
@@ -247,126 +172,51 @@ impl Mirror {
     ) -> Option<()> {
         let set = self.name(&component.set);
         let name = self.renamed(&component.name);
-        let mut ports: Vec<Name> = component.ports.iter().map(|p| self.port(p)).collect();
+        let mut law = component.law.clone();
+        let Mirrored { inputs, after } = match law.mirror(self.reflection) {
+            Ok(mirrored) => mirrored,
+            Err(help) => {
+                let (kind, name) = (law.kind().name, &component.name);
+                let message = format!("the {kind} component `{}` cannot be mirrored", name.text);
+                texts.error(name.spot, "model/mirror", message, help);
+                return None;
+            }
+        };
         let part =
             |what: &str| Name { text: format!("{}_mirror_{what}", name.text), spot: name.spot };
-        // Replaces the input x at a port by slope·x + intercept.
-        let mut through = |port: &mut Name, what: &str, slope: f64, intercept: f64| {
-            let between = part(what);
-            made.push(ComponentDraft {
-                set: set.clone(),
-                name: between.clone(),
-                blueprint: Blueprint::Map(vec![Function::linear(slope, intercept)]),
-                ports: vec![port.clone()],
-            });
-            *port = Name { text: escaped(&between.text), spot: between.spot };
+        let at_port = |name: &Name| Name { text: escaped(&name.text), spot: name.spot };
+        let draft = |name: Name, law: Law, ports: Vec<Name>| ComponentDraft {
+            set: set.clone(),
+            name,
+            law,
+            ports,
         };
-        let mut refuse = |what: &str, help: &str| {
-            let message = format!("{what} `{}` cannot be mirrored", component.name.text);
-            texts.error(component.name.spot, "model/mirror", message, help);
-            None
+        let ports = law.ports_of(component.ports.len()).zip(&component.ports);
+        let mut names = vec![];
+        for (index, (port, name)) in ports.enumerate() {
+            let renamed = match port.takes {
+                PortType::Segment | PortType::Joint => self.renamed(name),
+                _ => self.port(name),
+            };
+            match inputs.get(index) {
+                Some(&[slope, intercept]) if [slope, intercept] != [1.0, 0.0] => {
+                    let between = part(port.name);
+                    let map = Map { functions: vec![Function::linear(slope, intercept)] };
+                    made.push(draft(between.clone(), Law::Map(map), vec![renamed]));
+                    names.push(at_port(&between));
+                }
+                _ => names.push(renamed),
+            }
+        }
+        let Some(after) = after else {
+            made.push(draft(name.clone(), law, names));
+            return Some(());
         };
-        let blueprint = match &component.blueprint {
-            Blueprint::Scale(along) => Blueprint::Scale(match along {
-                Along::Everywhere => Along::Everywhere,
-                Along::Axis(axis) => Along::Axis(self.point(*axis)),
-                Along::Volume(axis) => Along::Volume(self.point(*axis)),
-            }),
-            Blueprint::Shear { along, across } => {
-                Blueprint::Shear { along: self.point(*along), across: self.point(*across) }
-            }
-            Blueprint::Curve { path, heading } => {
-                let heading = heading.map(|Heading { forward, up }| Heading {
-                    forward: self.point(forward),
-                    up: self.point(up),
-                });
-                Blueprint::Curve { path: self.path(path), heading }
-            }
-            Blueprint::Cone(held, cone) => match self.cone(cone) {
-                Some(cone) => Blueprint::Cone(self.held(held), cone),
-                None => return refuse("the cone", "write both sides"),
-            },
-            Blueprint::Contact { segment, surface, before, gliding } => match self.gliding(gliding)
-            {
-                Some(gliding) => {
-                    let (segment, surface) = (self.renamed(segment), self.renamed(surface));
-                    Blueprint::Contact { segment, surface, before: *before, gliding }
-                }
-                None => return refuse("the contact", "write both sides"),
-            },
-            Blueprint::Custom(custom) => {
-                let help = format!(
-                    "the mirror image of law `{}` is not known: write both sides",
-                    custom.law
-                );
-                return refuse("the custom component", &help);
-            }
-            Blueprint::Rotate(axis) => Blueprint::Rotate(self.turning(*axis)),
-            Blueprint::Pivot(axis, centre) => {
-                Blueprint::Pivot(self.turning(*axis), self.centre(centre))
-            }
-            Blueprint::Compensate { segment, ancestors, weight } => Blueprint::Compensate {
-                segment: self.renamed(segment),
-                ancestors: ancestors.iter().map(|a| self.renamed(a)).collect(),
-                weight: *weight,
-            },
-            Blueprint::Translate(axis) => Blueprint::Translate(self.point(*axis)),
-            Blueprint::Place(frame) => Blueprint::Place(self.frame(*frame)),
-            Blueprint::Ellipsoid(radii, axis) if ports.len() == 3 => {
-                // Slopes and intercepts of the three angles.
-                let [x, y, z] = match self.axis {
-                    0 => [(1.0, 0.0), (-1.0, 0.0), (-1.0, 0.0)],
-                    1 => [(-1.0, 0.0), (1.0, 0.0), (-1.0, 0.0)],
-                    _ => [(-1.0, PI), (1.0, 0.0), (-1.0, 0.0)],
-                };
-                let whats = ["about_x", "about_y", "about_z"];
-                for ((port, what), (slope, intercept)) in ports.iter_mut().zip(whats).zip([x, y, z])
-                {
-                    if (slope, intercept) != (1.0, 0.0) {
-                        through(port, what, slope, intercept);
-                    }
-                }
-                if self.axis == 2 {
-                    let (surface, half) = (part("surface"), part("half_turn"));
-                    let blueprint = Blueprint::Ellipsoid(*radii, *axis);
-                    let set = set.clone();
-                    let name = surface.clone();
-                    made.push(ComponentDraft { set: set.clone(), name, blueprint, ports });
-                    let turn =
-                        Affine::from_rotation(Mat3::from_columns(Vec3::X, -Vec3::Y, -Vec3::Z));
-                    let blueprint = Blueprint::Place(turn);
-                    let name = half.clone();
-                    made.push(ComponentDraft { set, name, blueprint, ports: vec![] });
-                    ports = [surface, half]
-                        .map(|n| Name { text: escaped(&n.text), spot: n.spot })
-                        .to_vec();
-                    Blueprint::Product
-                } else {
-                    Blueprint::Ellipsoid(*radii, *axis)
-                }
-            }
-            Blueprint::ConstantCurvature { neutral, length } if ports.len() == 3 => {
-                // In the order x, z, y; a turn about an axis keeps its sign if that axis is reversed.
-                let signs = match self.axis {
-                    0 => [1.0, -1.0, -1.0],
-                    2 => [-1.0, 1.0, -1.0],
-                    _ => {
-                        let help = "its rest direction is y: write both sides, or turn its frame";
-                        return refuse("the column", help);
-                    }
-                };
-                let whats = ["about_x", "about_z", "about_y"];
-                for ((port, what), sign) in ports.iter_mut().zip(whats).zip(signs) {
-                    if sign < 0.0 {
-                        through(port, what, sign, 0.0);
-                    }
-                }
-                let neutral = std::array::from_fn(|i| signs[i] * neutral[i]);
-                Blueprint::ConstantCurvature { neutral, length: *length }
-            }
-            other => other.clone(),
-        };
-        made.push(ComponentDraft { set, name, blueprint, ports });
+        let (before, fixed) = (part("before"), part("after"));
+        let factors = vec![at_port(&before), at_port(&fixed)];
+        made.push(draft(before, law, names));
+        made.push(draft(fixed, Law::Place(Place { child_in_parent: after }), vec![]));
+        made.push(draft(name.clone(), Law::Product(Product), factors));
         Some(())
     }
 }

@@ -26,7 +26,6 @@
 //! keeps the text it was read from, so that saving it loses nothing; [`write()`] writes any model,
 //! with everything expanded.
 
-mod blueprint;
 mod draft;
 mod joint;
 mod keys;
@@ -115,12 +114,12 @@ pub fn read(
 /// ```
 /// use condyle_formats::document;
 /// use condyle_math::{Affine, Scalar, Vec3};
-/// use condyle_model::component::{Law, Registry};
+/// use condyle_model::component::{MotionLaw, Registry};
 ///
 /// /// A bone that is lifted with the square of an angle.
 /// #[derive(Debug)]
 /// struct Lift(f64);
-/// impl Law for Lift {
+/// impl MotionLaw for Lift {
 ///     fn transform<S: Scalar>(&self, inputs: &[S]) -> Affine<S> {
 ///         let height = inputs[0] * inputs[0] * S::from_f64(self.0);
 ///         Affine::from_translation(Vec3::new(S::zero(), height, S::zero()))

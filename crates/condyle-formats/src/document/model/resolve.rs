@@ -1,15 +1,14 @@
 //! Resolves names, and builds the checked model.
 
-use super::blueprint::Blueprint;
 use super::draft::{ConditionDraft, Draft, Holder};
 use super::mirror::escaped;
 use crate::document::texts::{Name, Spot, Texts};
 use condyle_diagnostics::{Diagnostic, Read, Severity, Subject, did_you_mean, nearest};
-use condyle_math::{Affine, Vec3};
-use condyle_model::component::{Component, Place, PortType, Product};
+use condyle_math::Vec3;
+use condyle_model::component::{PortType, Product};
 use condyle_model::model::{AXIS_LENGTH, ComponentId, Condition, JointSetId};
 use condyle_model::{
-    Closure, CoordinateId, CoordinateKind, Model, ModelBuilder, PostureTerm, SegmentId, Signal,
+    Closure, CoordinateId, CoordinateKind, Law, Model, ModelBuilder, PostureTerm, SegmentId, Signal,
 };
 use std::collections::{HashMap, HashSet};
 
@@ -95,13 +94,13 @@ fn factors(model: &Model) -> u64 {
     let count = model.components().len();
     let index = |source: Signal| match source {
         Signal::Output(id, _) => Some(id.index()),
-        Signal::Coordinate(_) => None,
+        Signal::Coordinate(_) | Signal::Segment(_) => None,
     };
     let parts: Vec<Vec<usize>> = model
         .components()
         .iter()
-        .map(|c| match &c.component {
-            Component::Product(p) => p.factors.iter().filter_map(|s| index(*s)).collect(),
+        .map(|c| match c.law {
+            Law::Product(_) => c.values().filter_map(index).collect(),
             _ => vec![],
         })
         .collect();
@@ -192,16 +191,15 @@ impl Resolver<'_> {
             coordinates.push((id, c.set.clone(), c.follows.clone()));
         }
         // All are added before any is connected: a component may reference one below it.
-        let mut components: Vec<(ComponentId, String, Name, Blueprint, Vec<Name>)> = vec![];
+        let mut components: Vec<(ComponentId, String, Name, Vec<Name>)> = vec![];
         for c in draft.components {
             let Some(&set) = self.sets.get(&c.set) else { continue };
-            let stand_in = Component::Place(Place { child_in_parent: Affine::IDENTITY });
-            let source = self.builder.component(set, &c.name.text, stand_in);
+            let (port, outputs) = c.law.outputs();
+            let source = self.builder.component(set, &c.name.text, c.law, vec![]);
             let Signal::Output(id, _) = source else { continue };
-            let (port, outputs) = c.blueprint.outputs();
             self.mean(&c.set, &c.name, Meaning { source, port, outputs });
             self.places.insert(Subject::component(&c.set, &c.name.text), c.name.spot);
-            components.push((id, c.set, c.name, c.blueprint, c.ports));
+            components.push((id, c.set, c.name, c.ports));
         }
         for (id, set, follows) in coordinates {
             if let Some(port) = follows
@@ -210,42 +208,8 @@ impl Resolver<'_> {
                 self.builder.follow(id, source);
             }
         }
-        for (id, set, name, blueprint, ports) in components {
-            if let Blueprint::Combine(function) = &blueprint
-                && function.arity() != ports.len()
-            {
-                let message = format!(
-                    "component `{}` has {} inputs but its function takes {}",
-                    name.text,
-                    ports.len(),
-                    function.arity()
-                );
-                let help = "give as many inputs as the function has arguments";
-                self.texts.error(name.spot, "model/arity", message, help);
-                continue;
-            }
-            let connected: Vec<Option<Signal>> = ports
-                .iter()
-                .enumerate()
-                .map(|(position, port)| self.port(&set, port, blueprint.input(position)))
-                .collect();
-            let connected: Option<Vec<Signal>> = connected.into_iter().collect();
-            let Some(connected) = connected else { continue };
-            let before = self.texts.count();
-            match blueprint.build(connected, &mut |name| self.segment(name)) {
-                Ok(component) => *self.builder.component_mut(id) = component,
-                // Unknown segments are reported already.
-                Err(_) if self.texts.count() > before => {}
-                Err(why) => {
-                    let message = format!("component `{}` is invalid: {why}", name.text);
-                    self.texts.error(
-                        name.spot,
-                        "model/component",
-                        message,
-                        "change its parameters",
-                    );
-                }
-            }
+        for (id, set, name, ports) in components {
+            self.connect(id, &set, &name, &ports);
         }
         self.outputs(&draft.outputs);
         for m in &draft.markers {
@@ -261,6 +225,36 @@ impl Resolver<'_> {
         }
         self.postures(&draft.postures);
         self.sizes(&draft.sizes);
+    }
+
+    /// Connects the names at the ports of a component.
+    fn connect(&mut self, id: ComponentId, set: &str, name: &Name, names: &[Name]) {
+        let law = &self.builder.component_mut(id).law;
+        if let Law::Combine(c) = law
+            && c.function.arity() != names.len()
+        {
+            let message = format!(
+                "component `{}` has {} inputs but its function takes {}",
+                name.text,
+                names.len(),
+                c.function.arity()
+            );
+            let help = "give as many inputs as the function has arguments";
+            self.texts.error(name.spot, "model/arity", message, help);
+            return;
+        }
+        let ports: Vec<_> = law.ports_of(names.len()).collect();
+        let inputs: Vec<Option<Signal>> = ports
+            .iter()
+            .zip(names)
+            .map(|(port, name)| match port.takes {
+                PortType::Segment | PortType::Joint => self.segment(name).map(Signal::Segment),
+                takes => self.port(set, name, takes),
+            })
+            .collect();
+        if let Some(inputs) = inputs.into_iter().collect() {
+            self.builder.component_mut(id).inputs = inputs;
+        }
     }
 
     fn postures(&mut self, postures: &[super::draft::PostureDraft]) {
@@ -338,8 +332,8 @@ impl Resolver<'_> {
                     while self.names.contains_key(&(o.set.clone(), name.clone())) {
                         name.push('_');
                     }
-                    let product = Component::Product(Product { factors });
-                    let source = self.builder.component(set, &name, product);
+                    let product = Law::Product(Product);
+                    let source = self.builder.component(set, &name, product, factors);
                     let meaning = Meaning { source, port: PortType::Transform, outputs: 1 };
                     self.mean(&o.set, &Name { text: name, spot: o.segment.spot }, meaning);
                     source
@@ -427,7 +421,7 @@ impl Resolver<'_> {
     fn coordinate(&mut self, name: &Name) -> Option<CoordinateId> {
         match self.port("", name, PortType::Scalar)? {
             Signal::Coordinate(id) => Some(id),
-            Signal::Output(..) => {
+            Signal::Output(..) | Signal::Segment(_) => {
                 let message = format!("`{}` is a component", name.text);
                 self.texts.error(name.spot, "model/port-type", message, "name a coordinate");
                 None
@@ -469,6 +463,7 @@ impl Resolver<'_> {
                 PortType::Scalar => "a scalar",
                 PortType::Orientation => "an orientation",
                 PortType::Transform => "a transform",
+                PortType::Segment | PortType::Joint => "a segment",
             };
             let message =
                 format!("`{}` is {}, not {}", port.text, word(meaning.port), word(wanted));
@@ -480,6 +475,7 @@ impl Resolver<'_> {
                     "name a coordinate of kind \"orientation\", or a cone of one"
                 }
                 PortType::Transform => "name a component such as rotate, translate or product",
+                PortType::Segment | PortType::Joint => "name a segment",
             };
             self.texts.error(port.spot, "model/port-type", message, help);
             return None;

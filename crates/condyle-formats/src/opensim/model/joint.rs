@@ -257,8 +257,9 @@ fn factors(
         "ConstantCurvatureJoint" => {
             let neutral = triple(element, "neutral_angle_x_z_y")?.to_array();
             let length = element.child_f64("length")?.unwrap_or(1.0);
-            let column = ConstantCurvature { angles: [q(0), q(1), q(2)], neutral, length };
-            vec![Factor::Law(reader.builder.constant_curvature(set, "column", column))]
+            let column = ConstantCurvature { neutral, length };
+            let angles = [q(0), q(1), q(2)];
+            vec![Factor::Law(reader.builder.constant_curvature(set, "column", angles, column))]
         }
         other => {
             return Err(element

@@ -37,26 +37,81 @@ mod quartic;
 
 pub use pairs::ContactPair;
 
-use super::Signal;
-use crate::position::SegmentId;
+use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
 use closest::distance;
 use condyle_math::{Affine, Lane, Mat3, Scalar, Vec3};
 use pairs::Places;
 use quartic::{Quartic, Turn};
 
 /// A segment that glides on an ellipsoid fixed in another segment, like the scapula on the thorax.
+///
+/// Its ports are the `segment` that glides, the scapula; the `surface`, the segment in which the
+/// ellipsoid is fixed: the thorax, or a bone that moves with it; the transform of the segment's own joint
+/// `before` the two rotations; and at most two `drivers` that interpolate between the pairs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contact {
-    /// The segment that glides: the scapula.
-    pub segment: SegmentId,
-    /// The segment in which the ellipsoid is fixed: the thorax, or a bone that moves with it.
-    pub surface: SegmentId,
-    /// The transform of the segment's own joint, applied before the two rotations.
-    pub before: Option<Signal>,
-    /// The scalars that interpolate between the pairs: at most two.
-    pub drivers: Vec<Signal>,
+    /// Whether there is a transform before the two rotations.
+    pub before: bool,
     /// Ellipsoid, axis and pairs of points.
     pub law: Gliding,
+}
+
+impl Contact {
+    pub(crate) const KIND: Kind = Kind {
+        name: "contact",
+        ports: &[
+            Port::one("segment", PortType::Joint),
+            Port::one("surface", PortType::Segment),
+            Port::perhaps("before", PortType::Transform),
+            Port::perhaps_list("drivers", PortType::Scalar),
+        ],
+    };
+}
+
+impl Contract for Contact {
+    fn has(&self, port: &Port) -> bool {
+        self.before || port.name != "before"
+    }
+
+    fn outputs(&self) -> (PortType, usize) {
+        (PortType::Transform, 1)
+    }
+
+    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+        vec![]
+    }
+
+    fn grow(&mut self, _: f64, segments: &[f64]) {
+        let &[own, below, ..] = segments else { return };
+        // Rebuilt only where it changes, so that factor 1 keeps every bit.
+        if (own, below) == (1.0, 1.0) {
+            return;
+        }
+        let mut place = self.law.ellipsoid_in_surface();
+        place.translation = place.translation * below;
+        let pair = |p: &ContactPair| ContactPair {
+            first: p.first * own,
+            second: p.second * own,
+            at: p.at,
+        };
+        let pairs = self.law.pairs().iter().map(pair).collect();
+        if let Ok(law) = Gliding::new(place, self.law.radii() * below, self.law.axis(), pairs) {
+            self.law = law;
+        }
+    }
+
+    fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
+        let pair = |p: &ContactPair| ContactPair {
+            first: at.point(p.first),
+            second: at.point(p.second),
+            at: p.at,
+        };
+        let pairs = self.law.pairs().iter().map(pair).collect();
+        let pose = at.frame(self.law.ellipsoid_in_surface());
+        self.law = Gliding::new(pose, self.law.radii(), at.turning(self.law.axis()), pairs)
+            .map_err(|_| "write both sides".to_owned())?;
+        Ok(Mirrored::default())
+    }
 }
 
 /// The ellipsoid, the first axis and the pairs of points of a [`Contact`].

@@ -4,7 +4,7 @@ use super::super::instruction::{
     AnyLaw, ContactCall, Frame, Instruction, LawCall, Number, Step, Turn,
 };
 use super::{Compiler, Operand};
-use crate::component::{Compensate, Component, Contact, Signal, shear};
+use crate::component::{Component, Contact, Law, Signal, shear};
 use crate::model::{ComponentId, SegmentId};
 use condyle_math::{Affine, Mat3, Vec3};
 
@@ -23,12 +23,13 @@ fn merge_slides(steps: &mut Vec<Step>) {
 }
 
 impl Compiler<'_> {
-    /// The registers of the rotations A and A′ of [`Compensate`]: of the path from the parent of
+    /// The registers of the rotations A and A′ of a [`Compensate`](crate::component::Compensate): of the path from the parent of
     /// the topmost named ancestor to the parent of the segment, without and with compensation.
-    pub(super) fn paths(&mut self, compensate: &Compensate) -> (Frame, Frame) {
-        let path = self.model.compensated_path(compensate);
+    pub(super) fn paths(&mut self, component: &Component, weight: f64) -> (Frame, Frame) {
+        let path = self.model.between(component);
+        let ancestors: Vec<SegmentId> = component.segments_at("ancestors").collect();
         let mut registers = [self.program.code.identity; 2];
-        for (register, take) in registers.iter_mut().zip([0.0, compensate.weight]) {
+        for (register, take) in registers.iter_mut().zip([0.0, weight]) {
             let mut steps = vec![];
             for &id in &path {
                 let segment = self.model.segment(id);
@@ -38,7 +39,7 @@ impl Compiler<'_> {
                 {
                     // The first path has exponent 1 everywhere, the second 1 - w for named
                     // ancestors.
-                    let named = compensate.ancestors.contains(&id);
+                    let named = ancestors.contains(&id);
                     let exponent = if named { 1.0 - take } else { 1.0 };
                     if exponent != 0.0 {
                         steps.push(Step::Power { of, exponent });
@@ -55,41 +56,55 @@ impl Compiler<'_> {
 
     /// Compiles a contact: the chain from the ellipsoid to the joint frame of the segment, and the
     /// instruction that computes the rotations from it. Returns the register of the rotations.
-    pub(super) fn contact(&mut self, component: ComponentId, contact: &Contact) -> Frame {
+    pub(super) fn contact(
+        &mut self,
+        id: ComponentId,
+        component: &Component,
+        contact: &Contact,
+    ) -> Frame {
         let mut steps = vec![];
         self.fixed(contact.law.ellipsoid_in_surface().rigid_inverse(), &mut steps);
-        // The own motion of the gliding segment is the contact; before it comes `before`, if any.
-        for id in self.model.path_between(contact.surface, contact.segment) {
+        for id in self.model.between(component) {
             let segment = self.model.segment(id);
             self.fixed(segment.joint_in_parent, &mut steps);
-            let motion = if id == contact.segment { contact.before } else { segment.motion };
-            if let Some(Signal::Output(motion, _)) = motion
-                && let Some(register) = self.shared[motion.index()]
-            {
-                steps.push(Step::Transform(register));
-            }
-            if id != contact.segment {
-                self.fixed(segment.joint_in_segment.rigid_inverse(), &mut steps);
-            }
+            self.shared_step(segment.motion, &mut steps);
+            self.fixed(segment.joint_in_segment.rigid_inverse(), &mut steps);
         }
+        // The own motion of the gliding segment is the contact; before it comes `before`, if any.
+        let gliding = component.segments_at("segment").next().map(|id| self.model.segment(id));
+        let joint = gliding.map_or(Affine::IDENTITY, |segment| segment.joint_in_segment);
+        self.fixed(gliding.map_or(Affine::IDENTITY, |s| s.joint_in_parent), &mut steps);
+        self.shared_step(component.at("before").first().copied(), &mut steps);
         let frame = self.new_transform();
         self.chain(self.program.code.identity, steps, frame);
-        let drivers = contact.drivers.iter().map(|&driver| {
-            let scalar = self.scalar(driver);
-            self.register(scalar)
-        });
-        let drivers = drivers.collect();
+        let drivers = self.registers(component.at("drivers"));
         let output = self.new_transform();
         // Two angles and two gaps.
         let report = Number::new(self.program.code.scalars);
         self.program.code.scalars += 4;
-        let joint = self.model.segment(contact.segment).joint_in_segment;
         let law = contact.law.seen_from(joint);
-        let call = ContactCall { component, law, frame, drivers, output, report };
+        let call = ContactCall { component: id, law, frame, drivers, output, report };
         self.program.code.contacts.push(call);
         let contact = self.program.code.contacts.len() as u32 - 1;
         self.program.code.instructions.push(Instruction::Contact { contact });
         output
+    }
+
+    /// Appends a transform that several components read, by its register.
+    fn shared_step(&self, motion: Option<Signal>, steps: &mut Vec<Step>) {
+        if let Some(Signal::Output(motion, _)) = motion
+            && let Some(register) = self.shared[motion.index()]
+        {
+            steps.push(Step::Transform(register));
+        }
+    }
+
+    fn registers(&mut self, sources: &[Signal]) -> Vec<Number> {
+        let each = sources.iter().map(|&source| {
+            let scalar = self.scalar(source);
+            self.register(scalar)
+        });
+        each.collect()
     }
 
     pub(super) fn new_transform(&mut self) -> Frame {
@@ -112,10 +127,12 @@ impl Compiler<'_> {
                 continue;
             }
             at_root = false;
-            match &self.model.components[id.index()].component {
-                Component::Product(product) => stack.extend(product.factors.iter().rev()),
-                Component::Place(place) => self.fixed(place.child_in_parent, steps),
-                Component::Rotate(rotate) => match self.scalar(rotate.angle) {
+            let component = &self.model.components[id.index()];
+            let inputs = &component.inputs[..];
+            match &component.law {
+                Law::Product(_) => stack.extend(inputs.iter().rev()),
+                Law::Place(place) => self.fixed(place.child_in_parent, steps),
+                Law::Rotate(rotate) => match self.scalar(inputs[0]) {
                     Operand::Constant(angle) => {
                         let turn = Mat3::rotation_about(rotate.axis, angle.sin_cos());
                         self.fixed(Affine::from_rotation(turn), steps);
@@ -125,7 +142,7 @@ impl Compiler<'_> {
                         steps.push(turn);
                     }
                 },
-                Component::Translate(translate) => match self.scalar(translate.distance) {
+                Law::Translate(translate) => match self.scalar(inputs[0]) {
                     Operand::Constant(distance) => {
                         self.fixed(Affine::from_translation(translate.axis * distance), steps);
                     }
@@ -134,13 +151,13 @@ impl Compiler<'_> {
                         merge_slides(steps);
                     }
                 },
-                Component::Ball(ball) => {
-                    let register = self.scalar(ball.orientation);
+                Law::Ball(_) => {
+                    let register = self.scalar(inputs[0]);
                     let register = self.register(register);
                     steps.push(Step::Ball(register));
                 }
-                Component::Pivot(law) => {
-                    let angle = self.scalar(law.angle);
+                Law::Pivot(law) => {
+                    let angle = self.scalar(inputs[0]);
                     if let (Some(centre), Operand::Register(angle)) = (law.fixed_centre(), angle) {
                         // One centre: a rotation between two shifts, cheaper than the law.
                         self.fixed(Affine::from_translation(centre), steps);
@@ -149,15 +166,13 @@ impl Compiler<'_> {
                         self.fixed(Affine::from_translation(-centre), steps);
                         continue;
                     }
-                    self.law(AnyLaw::Pivot(law.clone()), &[law.angle], steps);
+                    self.law(AnyLaw::Pivot(law.clone()), inputs, steps);
                 }
-                Component::Ellipsoid(law) => {
-                    self.law(AnyLaw::Ellipsoid(law.clone()), &law.angles, steps);
+                Law::Ellipsoid(law) => self.law(AnyLaw::Ellipsoid(law.clone()), inputs, steps),
+                Law::ConstantCurvature(law) => {
+                    self.law(AnyLaw::ConstantCurvature(law.clone()), inputs, steps);
                 }
-                Component::ConstantCurvature(law) => {
-                    self.law(AnyLaw::ConstantCurvature(law.clone()), &law.angles, steps);
-                }
-                Component::Scale(scale) => match self.scalar(scale.factor) {
+                Law::Scale(scale) => match self.scalar(inputs[0]) {
                     Operand::Constant(factor) => {
                         let linear = scale.along.matrix(factor);
                         self.fixed(Affine::new(linear, Vec3::ZERO), steps);
@@ -168,7 +183,7 @@ impl Compiler<'_> {
                         steps.push(Step::Stretch { along, factor });
                     }
                 },
-                Component::Shear(shear) => match self.scalar(shear.amount) {
+                Law::Shear(shear) => match self.scalar(inputs[0]) {
                     Operand::Constant(amount) => {
                         let linear = shear::matrix(shear.along, shear.across, amount);
                         self.fixed(Affine::new(linear, Vec3::ZERO), steps);
@@ -179,41 +194,29 @@ impl Compiler<'_> {
                         steps.push(Step::Shear { directions, amount });
                     }
                 },
-                Component::Curve(law) => {
-                    self.law(AnyLaw::Curve(law.clone()), &[law.parameter], steps);
-                }
-                Component::Custom(law) => {
-                    self.law(AnyLaw::Custom(law.clone()), &law.inputs, steps);
-                }
-                Component::Compensate(compensate) => {
+                Law::Curve(law) => self.law(AnyLaw::Curve(law.clone()), inputs, steps),
+                Law::Custom(law) => self.law(AnyLaw::Custom(law.clone()), inputs, steps),
+                Law::Compensate(_) => {
                     // F⁻¹·A⁻¹·A′·F, with F the joint frame in the parent.
                     let Some((is, should)) = self.compensations[id.index()] else { continue };
-                    let joint = self.model.segment(compensate.segment).joint_in_parent.linear;
+                    let Some(moved) = component.segments_at("segment").next() else { continue };
+                    let joint = self.model.segment(moved).joint_in_parent.linear;
                     self.fixed(Affine::from_rotation(joint.transpose()), steps);
                     steps.push(Step::Power { of: is, exponent: -1.0 });
                     steps.push(Step::Power { of: should, exponent: 1.0 });
                     self.fixed(Affine::from_rotation(joint), steps);
                 }
-                Component::Contact(_) => {
+                Law::Contact(_) => {
                     let turns = self.contacts[id.index()].map(Step::Transform);
                     steps.extend(turns);
                 }
-                Component::Map(_)
-                | Component::Combine(_)
-                | Component::Depend(_)
-                | Component::Cone(_) => {}
+                Law::Map(_) | Law::Combine(_) | Law::Depend(_) | Law::Cone(_) => {}
             }
         }
     }
 
-    pub(super) fn law(&mut self, law: AnyLaw, inputs: &[Signal], steps: &mut Vec<Step>) {
-        let inputs = inputs
-            .iter()
-            .map(|&source| {
-                let scalar = self.scalar(source);
-                self.register(scalar)
-            })
-            .collect();
+    fn law(&mut self, law: AnyLaw, inputs: &[Signal], steps: &mut Vec<Step>) {
+        let inputs = self.registers(inputs);
         self.program.code.laws.push(LawCall { law, inputs });
         steps.push(Step::Law(self.program.code.laws.len() as u32 - 1));
     }

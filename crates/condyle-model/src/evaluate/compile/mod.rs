@@ -6,7 +6,7 @@ mod scalar;
 use super::derivative_plan::{DerivativePlan, plan};
 use super::instruction::{Code, Frame, Number};
 use super::program::Program;
-use crate::component::{Component, Signal, Swinging};
+use crate::component::{Law, Signal};
 use crate::model::{
     ComponentId, CoordinateId, CoordinateKind, Model, Node, SegmentId, dependency_order,
 };
@@ -176,8 +176,8 @@ impl Compiler<'_> {
         let (of_model, readers) = self.reached(order, all);
         self.readers = readers;
         let limits = model.component_ids().filter(|id| {
-            let component = &model.components[id.index()].component;
-            of_model[id.index()] && matches!(component, Component::Depend(_) | Component::Cone(_))
+            let law = &model.components[id.index()].law;
+            of_model[id.index()] && matches!(law, Law::Depend(_) | Law::Cone(_))
         });
         let wanted = (0..wanted.len()).filter(|&segment| wanted[segment]).filter_map(motion);
         let limits = limits.map(|id| Signal::Output(id, 0));
@@ -222,16 +222,13 @@ impl Compiler<'_> {
             if !self.needed[id.index()] {
                 continue;
             }
-            let held: Vec<Signal> = match &self.model.components[id.index()].component {
-                Component::Depend(c) => vec![c.passive],
-                Component::Cone(c) => match &c.of {
-                    Swinging::Angles(angles, _) => angles.to_vec(),
-                    Swinging::Directions(angles, _) => angles.to_vec(),
-                    Swinging::Orientation(source) => vec![*source],
-                },
+            let component = &self.model.components[id.index()];
+            let held = match component.law {
+                Law::Depend(_) => component.at("passive"),
+                Law::Cone(_) => &component.inputs,
                 _ => continue,
             };
-            for (k, source) in held.into_iter().enumerate() {
+            for (k, &source) in held.iter().enumerate() {
                 // A limit on the output of another one acts on the same coordinate, one level
                 // deeper.
                 let found = match source {

@@ -2,7 +2,7 @@
 
 use super::super::instruction::{CombineCall, ConeCall, Instruction, Number};
 use super::{Compiler, Operand};
-use crate::component::{Component, Depend, JointCone, Signal, Swinging};
+use crate::component::{Depend, JointCone, Law, Signal, Swinging};
 use crate::model::{ComponentId, CoordinateId, Node};
 use condyle_math::function::FunctionOfSeveral;
 
@@ -14,6 +14,7 @@ impl Compiler<'_> {
                 .get(output as usize)
                 .copied()
                 .unwrap_or(Operand::Constant(0.0)),
+            Signal::Segment(_) => Operand::Constant(0.0),
         }
     }
 
@@ -72,9 +73,10 @@ impl Compiler<'_> {
     }
 
     pub(super) fn component(&mut self, id: ComponentId) {
-        match &self.model.components[id.index()].component {
-            Component::Map(map) => {
-                let input = self.scalar(map.input);
+        let component = &self.model.components[id.index()];
+        match &component.law {
+            Law::Map(map) => {
+                let input = self.scalar(component.inputs[0]);
                 for function in &map.functions {
                     let value = function.as_constant();
                     // Constants are folded, and the identity needs no instruction.
@@ -93,44 +95,66 @@ impl Compiler<'_> {
                     self.outputs[id.index()].push(result);
                 }
             }
-            Component::Combine(combine) => {
-                let inputs: Vec<Operand> = combine.inputs.iter().map(|&s| self.scalar(s)).collect();
+            Law::Combine(combine) => {
+                let inputs: Vec<Operand> =
+                    component.inputs.iter().map(|&s| self.scalar(s)).collect();
                 let result = self.combine(&combine.function, &inputs);
                 self.outputs[id.index()].push(result);
             }
-            Component::Depend(depend) => {
-                let result = self.depend(id, depend);
+            Law::Depend(depend) => {
+                let result = self.depend(id, depend, component.inputs[0], component.inputs[1]);
                 self.outputs[id.index()].push(result);
             }
-            Component::Cone(cone) => {
-                let results = self.cone(id, cone);
+            Law::Cone(cone) => {
+                let results = self.cone(id, cone, &component.inputs);
                 self.outputs[id.index()].extend(results);
             }
-            component => {
-                if let Component::Compensate(compensate) = component {
-                    self.compensations[id.index()] = Some(self.paths(compensate));
-                }
-                if let Component::Contact(contact) = component {
-                    self.contacts[id.index()] = Some(self.contact(id, contact));
-                }
-                // A transform with several readers is computed once, as a chain of its own.
-                if self.readers[id.index()] > 1 {
-                    let register = self.new_transform();
-                    let mut steps = vec![];
-                    self.append(id, &mut steps);
-                    self.chain(self.program.code.identity, steps, register);
-                    self.shared[id.index()] = Some(register);
-                }
+            Law::Compensate(law) => {
+                self.compensations[id.index()] = Some(self.paths(component, law.weight));
+                self.share(id);
             }
+            Law::Contact(contact) => {
+                self.contacts[id.index()] = Some(self.contact(id, component, contact));
+                self.share(id);
+            }
+            Law::Rotate(_)
+            | Law::Pivot(_)
+            | Law::Translate(_)
+            | Law::Ball(_)
+            | Law::Place(_)
+            | Law::Ellipsoid(_)
+            | Law::ConstantCurvature(_)
+            | Law::Scale(_)
+            | Law::Shear(_)
+            | Law::Curve(_)
+            | Law::Custom(_)
+            | Law::Product(_) => self.share(id),
+        }
+    }
+
+    /// Computes a transform with several readers once, as a chain of its own.
+    fn share(&mut self, id: ComponentId) {
+        if self.readers[id.index()] > 1 {
+            let register = self.new_transform();
+            let mut steps = vec![];
+            self.append(id, &mut steps);
+            self.chain(self.program.code.identity, steps, register);
+            self.shared[id.index()] = Some(register);
         }
     }
 
     /// Compiles a passive scalar between bounds that a driver sets: its effective value, and a
     /// limit row for each bound.
-    pub(super) fn depend(&mut self, id: ComponentId, depend: &Depend) -> Operand {
-        let passive = self.scalar(depend.passive);
+    fn depend(
+        &mut self,
+        id: ComponentId,
+        depend: &Depend,
+        passive: Signal,
+        driver: Signal,
+    ) -> Operand {
+        let passive = self.scalar(passive);
         let passive = self.register(passive);
-        let driver = self.scalar(depend.driver);
+        let driver = self.scalar(driver);
         let driver = self.register(driver);
         let mut bounds = [None; 2];
         let sides = [(&depend.lower, 1.0), (&depend.upper, -1.0)];
@@ -157,14 +181,14 @@ impl Compiler<'_> {
     }
 
     /// Compiles a ball joint inside a cone: its effective numbers, and its limit rows.
-    fn cone(&mut self, id: ComponentId, component: &JointCone) -> Vec<Operand> {
+    fn cone(&mut self, id: ComponentId, law: &JointCone, sources: &[Signal]) -> Vec<Operand> {
         let (mut inputs, mut outputs) = (vec![], vec![]);
-        match &component.of {
-            Swinging::Orientation(source) => {
-                let scalar = self.scalar(*source);
-                let first = self.register(scalar);
+        for (k, &source) in sources.iter().enumerate() {
+            let scalar = self.scalar(source);
+            let first = self.register(scalar);
+            let output = Signal::Output(id, k as u32);
+            if matches!(law.of, Swinging::Orientation) {
                 inputs.extend((0..4).map(|k| Number(first.0 + k)));
-                let output = Signal::Output(id, 0);
                 let first = match self.effective.get(&output) {
                     Some(&id) => self.own(id),
                     None => {
@@ -173,21 +197,15 @@ impl Compiler<'_> {
                     }
                 };
                 outputs.extend((0..4).map(|k| Number(first.0 + k)));
-            }
-            Swinging::Angles(..) | Swinging::Directions(..) => {
-                for (k, (_, _, source)) in
-                    Component::Cone(component.clone()).inputs().into_iter().enumerate()
-                {
-                    let scalar = self.scalar(source);
-                    inputs.push(self.register(scalar));
-                    outputs.push(self.limit_output(Signal::Output(id, k as u32)));
-                }
+            } else {
+                inputs.push(first);
+                outputs.push(self.limit_output(output));
             }
         }
-        let rows: Vec<Number> = (0..component.rows()).map(|_| self.new_scalar()).collect();
+        let rows: Vec<Number> = (0..law.rows()).map(|_| self.new_scalar()).collect();
         self.program.code.rows.extend(&rows);
         let results = outputs.iter().map(|&register| Operand::Register(register)).collect();
-        let call = ConeCall { component: component.clone(), inputs, outputs, rows };
+        let call = ConeCall { law: law.clone(), inputs, outputs, rows };
         self.program.code.cones.push(call);
         let cone = self.program.code.cones.len() as u32 - 1;
         self.program.code.instructions.push(Instruction::Cone { cone });

@@ -2,10 +2,9 @@
 
 use super::{AXIS_LENGTH, finding, source_type};
 use crate::component::{
-    Compensate, Component, Contact, Curve, JointCone, Law, MOST_COMBINED, MOST_LAW_INPUTS, Shear,
-    Signal, Swinging,
+    Component, Curve, JointCone, Law, MOST_LAW_INPUTS, PortType, Shear, Signal, Swinging,
 };
-use crate::model::{Condition, Model, NamedComponent, Node, SegmentId, dependency_order};
+use crate::model::{Condition, Model, Node, dependency_order};
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_math::Vec3;
 use std::fmt;
@@ -17,12 +16,24 @@ struct Part {
 }
 
 impl Part {
-    fn of(model: &Model, named: &NamedComponent) -> Self {
-        let (kind, set) = (named.component.kind(), &model.joint_sets[named.joint_set.index()].name);
+    fn of(model: &Model, component: &Component) -> Self {
+        let (kind, name) = (component.law.kind().name, &component.name);
+        let set = &model.joint_sets[component.joint_set.index()].name;
         Self {
-            sentence: format!("component `{}` ({kind}) of joint set `{set}`", named.name),
-            subject: model.component_subject(named),
+            sentence: format!("component `{name}` ({kind}) of joint set `{set}`"),
+            subject: model.component_subject(component),
         }
+    }
+}
+
+impl Part {
+    fn error(
+        &self,
+        code: &'static str,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Diagnostic {
+        finding(Severity::Error, code, self.subject.clone(), message, help)
     }
 }
 
@@ -34,73 +45,93 @@ impl fmt::Display for Part {
 
 pub(super) fn check_components(model: &Model, findings: &mut Vec<Diagnostic>) {
     let deforming = deforming_components(model);
-    for named in &model.components {
-        let place = Part::of(model, named);
-        for (port, expected, source) in named.component.inputs() {
-            let found = source_type(model, source);
-            if let Signal::Output(id, output) = source
-                && output as usize >= model.components[id.index()].component.outputs().1
-            {
-                findings.push(finding(
-                    Severity::Error,
-                    "model/no-such-output",
-                    place.subject.clone(),
-                    format!(
-                        "port `{port}` of {place} reads output {} of `{}`",
-                        output + 1,
-                        model.components[id.index()].name
-                    ),
-                    format!("it has {}", model.components[id.index()].component.outputs().1),
-                ));
-            }
-            if found != expected {
-                findings.push(finding(
-                    Severity::Error,
-                    "model/port-type",
-                    place.subject.clone(),
-                    format!("port `{port}` of {place} gets a {found:?}").to_lowercase(),
-                    format!("connect a {expected:?}").to_lowercase(),
-                ));
-            }
+    for component in &model.components {
+        let place = Part::of(model, component);
+        check_ports(model, &place, component, findings);
+        for (name, axis) in component.law.clone().directions() {
+            check_axis(&place, name, *axis, findings);
         }
-        for (name, axis) in axes(&named.component) {
-            check_axis(&place, name, axis, findings);
-        }
-        match &named.component {
-            Component::Compensate(c) => check_compensate(model, &place, c, &deforming, findings),
-            Component::Contact(c) => check_contact(model, &place, c, &deforming, findings),
-            Component::Combine(c) => {
-                check_arity(&place, c.inputs.len(), c.function.arity(), MOST_COMBINED, findings);
+        let inputs = component.inputs.len();
+        match &component.law {
+            Law::Compensate(c) => {
+                check_weight(&place, c.weight, findings);
+                check_ancestors(model, &place, component, "ancestors", findings);
+                check_rigid(model, &place, component, &deforming, findings);
             }
-            Component::Custom(c) => {
-                check_arity(&place, c.inputs.len(), c.inputs.len(), MOST_LAW_INPUTS, findings);
+            Law::Contact(_) => {
+                check_ancestors(model, &place, component, "surface", findings);
+                check_rigid(model, &place, component, &deforming, findings);
+                let drivers = component.at("drivers").len();
+                if drivers > 2 {
+                    let message = format!("{place} has {drivers} drivers");
+                    let help = "blend its pairs over at most two";
+                    findings.push(place.error("model/arity", message, help));
+                }
             }
-            Component::Cone(c) => check_cone(&place, c, findings),
-            Component::Shear(c) => check_shear(&place, c, findings),
-            Component::Curve(c) => check_curve(&place, c, findings),
-            _ => {}
+            Law::Combine(c) => check_arity(&place, inputs, c.function.arity(), findings),
+            Law::Custom(_) if inputs > MOST_LAW_INPUTS => {
+                let message = format!("{place} has {inputs} inputs");
+                let help = format!("it takes at most {MOST_LAW_INPUTS}");
+                findings.push(place.error("model/arity", message, help));
+            }
+            Law::Cone(c) => check_cone(&place, c, component.at("angles").len(), findings),
+            Law::Shear(c) => check_shear(&place, c, findings),
+            Law::Curve(c) => check_curve(&place, c, findings),
+            Law::Map(_)
+            | Law::Depend(_)
+            | Law::Rotate(_)
+            | Law::Pivot(_)
+            | Law::Translate(_)
+            | Law::Ball(_)
+            | Law::Place(_)
+            | Law::Ellipsoid(_)
+            | Law::ConstantCurvature(_)
+            | Law::Scale(_)
+            | Law::Custom(_)
+            | Law::Product(_) => {}
         }
     }
     check_closures(model, &deforming, findings);
 }
 
-/// The directions of a component, normalised when the model is built.
-fn axes(component: &Component) -> Vec<(&'static str, Vec3)> {
-    match component {
-        Component::Rotate(c) => vec![("axis", c.axis)],
-        Component::Translate(c) => vec![("axis", c.axis)],
-        Component::Scale(c) => c.along.axis().map(|axis| ("axis", axis)).into_iter().collect(),
-        Component::Shear(c) => vec![("along", c.along), ("across", c.across)],
-        Component::Cone(c) => match &c.of {
-            Swinging::Angles(_, axes) => axes.iter().map(|&axis| ("axes", axis)).collect(),
-            Swinging::Directions(_, axes) => axes.iter().map(|&axis| ("axes", axis)).collect(),
-            Swinging::Orientation(_) => vec![],
-        },
-        Component::Curve(c) => match c.heading {
-            Some(heading) => vec![("forward", heading.forward), ("up", heading.up)],
-            None => vec![],
-        },
-        _ => vec![],
+/// Types and numbers of what is at the ports.
+fn check_ports(model: &Model, place: &Part, component: &Component, findings: &mut Vec<Diagnostic>) {
+    let (mut single, mut listed) = (0, false);
+    for port in component.law.ports() {
+        single += usize::from(!port.is_list());
+        listed |= port.is_list();
+    }
+    let inputs = component.inputs.len();
+    if inputs < single || (inputs > single && !listed) {
+        let message = format!("{place} has {inputs} inputs");
+        let help = format!("connect {single}, one to each of its ports");
+        findings.push(place.error("model/arity", message, help));
+    }
+    for (port, source) in component.ports() {
+        let (name, found) = (port.name, source_type(model, source));
+        if let Signal::Output(id, output) = source {
+            let read = &model.components[id.index()];
+            let outputs = read.law.outputs().1;
+            if output as usize >= outputs {
+                let output = output + 1;
+                let message =
+                    format!("port `{name}` of {place} reads output {output} of `{}`", read.name);
+                findings.push(place.error(
+                    "model/no-such-output",
+                    message,
+                    format!("it has {outputs}"),
+                ));
+            }
+        }
+        let fits = match port.takes {
+            PortType::Joint => found == PortType::Segment,
+            takes => found == takes,
+        };
+        if !fits {
+            let message = format!("port `{name}` of {place} gets a {found:?}").to_lowercase();
+            let help = format!("connect a {:?}", port.takes).to_lowercase();
+            findings.push(place.error("model/port-type", message, help));
+        }
     }
 }
 
@@ -125,34 +156,21 @@ fn check_axis(place: &Part, name: &str, axis: Vec3, findings: &mut Vec<Diagnosti
     }
 }
 
-fn check_arity(
-    place: &Part,
-    has: usize,
-    takes: usize,
-    most: usize,
-    findings: &mut Vec<Diagnostic>,
-) {
+fn check_arity(place: &Part, has: usize, takes: usize, findings: &mut Vec<Diagnostic>) {
     if has != takes {
-        findings.push(finding(
-            Severity::Error,
-            "model/arity",
-            place.subject.clone(),
-            format!("{place} has {has} inputs but its function takes {takes}"),
-            "connect as many inputs as the function has arguments",
-        ));
-    }
-    if has > most {
-        findings.push(finding(
-            Severity::Error,
-            "model/arity",
-            place.subject.clone(),
-            format!("{place} has {has} inputs"),
-            format!("it takes at most {most}"),
-        ));
+        let message = format!("{place} has {has} inputs but its function takes {takes}");
+        let help = "connect as many inputs as the function has arguments";
+        findings.push(place.error("model/arity", message, help));
     }
 }
 
-fn check_cone(place: &Part, cone: &JointCone, findings: &mut Vec<Diagnostic>) {
+fn check_cone(place: &Part, cone: &JointCone, angles: usize, findings: &mut Vec<Diagnostic>) {
+    let axes = match cone.of {
+        Swinging::Angles(_) => 3,
+        Swinging::Directions(_) => 2,
+        Swinging::Orientation => 0,
+    };
+    check_arity(place, angles, axes, findings);
     let oblique = cone.obliqueness();
     if oblique.is_nan() || oblique > 1e-6 {
         findings.push(finding(
@@ -164,7 +182,7 @@ fn check_cone(place: &Part, cone: &JointCone, findings: &mut Vec<Diagnostic>) {
              third (with two angles: to the rest direction)",
         ));
     }
-    if matches!(cone.of, Swinging::Directions(..)) && cone.cone.twist_at_rest().is_some() {
+    if matches!(cone.of, Swinging::Directions(_)) && cone.cone.twist_at_rest().is_some() {
         findings.push(finding(
             Severity::Warning,
             "model/cone-twist",
@@ -207,12 +225,10 @@ fn deforming_components(model: &Model) -> Vec<bool> {
     let mut deforming = vec![false; model.components.len()];
     for node in dependency_order(model).unwrap_or_default() {
         let Node::Component(id) = node else { continue };
-        deforming[id.index()] = match &model.components[id.index()].component {
-            Component::Scale(_) | Component::Shear(_) => true,
-            Component::Custom(c) => !c.is_rigid(),
-            Component::Product(c) => c.factors.iter().any(|&factor| deforms(&deforming, factor)),
-            _ => false,
-        };
+        let component = &model.components[id.index()];
+        deforming[id.index()] = component.law.deforms()
+            || matches!(component.law, Law::Product(_))
+                && component.values().any(|factor| deforms(&deforming, factor));
     }
     deforming
 }
@@ -251,102 +267,54 @@ fn check_closures(model: &Model, deforming: &[bool], findings: &mut Vec<Diagnost
     }
 }
 
-fn check_compensate(
-    model: &Model,
-    place: &Part,
-    c: &Compensate,
-    deforming: &[bool],
-    findings: &mut Vec<Diagnostic>,
-) {
-    if !(0.0..=1.0).contains(&c.weight) {
-        findings.push(finding(
-            Severity::Error,
-            "model/weight",
-            place.subject.clone(),
-            format!("{place} has the weight {}", c.weight),
-            "give a weight from 0 (nothing is undone) to 1 (all is)",
-        ));
-    }
-    let mut ancestors = vec![];
-    let mut here = model.segment(c.segment).parent;
-    while let Some(id) = here
-        && ancestors.len() < model.segments.len()
-    {
-        ancestors.push(id);
-        here = model.segment(id).parent;
-    }
-    for id in c.ancestors.iter().filter(|id| !ancestors.contains(id)) {
-        findings.push(finding(
-            Severity::Error,
-            "model/not-an-ancestor",
-            place.subject.clone(),
-            format!(
-                "{place} compensates `{}`, which is not an ancestor of `{}`",
-                model.segment(*id).name,
-                model.segment(c.segment).name
-            ),
-            "name ancestors of this segment",
-        ));
-    }
-    for id in model.compensated_path(c) {
-        check_rigid(model, place, id, model.segment(id).motion, deforming, findings);
+fn check_weight(place: &Part, weight: f64, findings: &mut Vec<Diagnostic>) {
+    if !(0.0..=1.0).contains(&weight) {
+        let message = format!("{place} has the weight {weight}");
+        let help = "give a weight from 0 (nothing is undone) to 1 (all is)";
+        findings.push(place.error("model/weight", message, help));
     }
 }
 
-fn check_contact(
+/// Whether the segments at a port are ancestors of the one at the port `segment`.
+fn check_ancestors(
     model: &Model,
     place: &Part,
-    c: &Contact,
-    deforming: &[bool],
+    component: &Component,
+    port: &str,
     findings: &mut Vec<Diagnostic>,
 ) {
-    let path = model.path_between(c.surface, c.segment);
-    if path.is_empty() {
-        findings.push(finding(
-            Severity::Error,
-            "model/not-an-ancestor",
-            place.subject.clone(),
-            format!(
-                "{place} glides on `{}`, which is not an ancestor of `{}`",
-                model.segment(c.surface).name,
-                model.segment(c.segment).name
-            ),
-            "name an ancestor of this segment",
-        ));
-    }
-    for id in path {
-        let motion = if id == c.segment { c.before } else { model.segment(id).motion };
-        check_rigid(model, place, id, motion, deforming, findings);
-    }
-    if c.drivers.len() > 2 {
-        findings.push(finding(
-            Severity::Error,
-            "model/arity",
-            place.subject.clone(),
-            format!("{place} has {} drivers", c.drivers.len()),
-            "blend its pairs over at most two",
-        ));
+    let Some(moved) = component.segments_at("segment").next() else { return };
+    let ancestors = model.path_to(model.segment(moved).parent);
+    for id in component.segments_at(port).filter(|id| !ancestors.contains(id)) {
+        let (name, moved) = (&model.segment(id).name, &model.segment(moved).name);
+        let message = format!(
+            "port `{port}` of {place} gets `{name}`, which is not an ancestor of `{moved}`"
+        );
+        let help = "name an ancestor of this segment";
+        findings.push(place.error("model/not-an-ancestor", message, help));
     }
 }
 
+/// Whether everything that it reads transforms by rotations and translations alone.
 fn check_rigid(
     model: &Model,
     place: &Part,
-    segment: SegmentId,
-    motion: Option<Signal>,
+    component: &Component,
     deforming: &[bool],
     findings: &mut Vec<Diagnostic>,
 ) {
-    if motion.is_some_and(|motion| deforms(deforming, motion)) {
-        findings.push(finding(
-            Severity::Error,
-            "model/deforms",
-            place.subject.clone(),
-            format!(
-                "{place} needs rotations, but the motion of `{}` stretches or shears",
-                model.segment(segment).name
-            ),
-            "put the scale or shear on a segment further out, or on one of its own",
-        ));
+    let between = model.between(component).into_iter();
+    let between = between.map(|id| (model.segment(id).motion, id));
+    let own = component.segments_at("segment").next();
+    let before = own.and_then(|id| Some((component.at("before").first().copied(), id)));
+    for (motion, segment) in between.chain(before) {
+        if motion.is_some_and(|motion| deforms(deforming, motion)) {
+            let segment = &model.segment(segment).name;
+            let message = format!(
+                "{place} needs rotations, but the motion of `{segment}` stretches or shears"
+            );
+            let help = "put the scale or shear on a segment further out, or on one of its own";
+            findings.push(place.error("model/deforms", message, help));
+        }
     }
 }

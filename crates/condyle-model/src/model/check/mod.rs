@@ -144,7 +144,7 @@ fn check_segments(model: &Model, findings: &mut Vec<Diagnostic>) {
                 Severity::Error,
                 "model/port-type",
                 Subject::Segment(segment.name.clone()),
-                format!("segment `{}` is moved by a scalar, not by a transform", segment.name),
+                format!("segment `{}` is moved by something that is no transform", segment.name),
                 "connect the output of a rotate, translate, ball or product component",
             ));
         }
@@ -220,6 +220,7 @@ fn source_type(model: &Model, source: Signal) -> PortType {
             CoordinateKind::Orientation => PortType::Orientation,
             _ => PortType::Scalar,
         },
-        Signal::Output(id, _) => model.components[id.index()].component.outputs().0,
+        Signal::Output(id, _) => model.components[id.index()].law.outputs().0,
+        Signal::Segment(_) => PortType::Segment,
     }
 }

@@ -20,15 +20,16 @@ pub(crate) enum Node {
 pub(crate) fn dependency_order(model: &Model) -> Result<Vec<Node>, (Subject, Vec<String>)> {
     let coordinates = model.coordinates.len();
     let number = |source: Signal| match source {
-        Signal::Coordinate(id) => id.index(),
-        Signal::Output(id, _) => coordinates + id.index(),
+        Signal::Coordinate(id) => Some(id.index()),
+        Signal::Output(id, _) => Some(coordinates + id.index()),
+        Signal::Segment(_) => None,
     };
     let reads = |node: usize| -> Vec<usize> {
         if node < coordinates {
-            model.coordinates[node].follows.into_iter().map(number).collect()
+            model.coordinates[node].follows.into_iter().filter_map(number).collect()
         } else {
             let id = ComponentId((node - coordinates) as u32);
-            model.reads(id).into_iter().map(number).collect()
+            model.reads(id).into_iter().filter_map(number).collect()
         }
     };
     let subject = |node: usize| match node.checked_sub(coordinates) {

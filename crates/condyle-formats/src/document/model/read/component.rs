@@ -4,47 +4,113 @@ use super::FRAME;
 use super::ModelReader;
 use crate::document::fields::Fields;
 use crate::document::function::rescaled;
-use crate::document::model::blueprint::Blueprint;
 use crate::document::model::draft::{ComponentDraft, Draft};
-use crate::document::model::keys;
 use crate::document::texts::Name;
 use crate::document::tree::{Entry, Value};
 use condyle_diagnostics::did_you_mean;
-use condyle_math::function::Function;
+use condyle_model::Law;
+use condyle_model::component::{
+    Arity, Ball, Combine, Compensate, Depend, Kind, Map, Pivot, Place, PortType, Product, Rotate,
+    Translate,
+};
 
 /// The help where a direction is missing.
 pub(super) const DIRECTION: &str = "a direction such as [0, 0, 1]";
+
+/// How the parameters of one kind of law are read.
+struct LawReader {
+    name: &'static str,
+    /// The keys of its parameters, beside its ports.
+    keys: &'static [&'static str],
+    read: fn(&mut ModelReader<'_>, &Fields<'_>) -> Option<Law>,
+}
+
+const READERS: &[LawReader] = &[
+    reader("map", &["function", "functions", "in", "out"], |r, f| r.map(f)),
+    reader("combine", &["function"], |r, f| {
+        let node = r.required(f, "function", "{ slopes = [...], intercept = 0 }")?;
+        Some(Law::Combine(Combine { function: r.several(node, "function")? }))
+    }),
+    reader("depend", &["lower", "upper"], |r, f| r.depend(f)),
+    reader(
+        "cone",
+        &["axes", "order", "rest", "points", "twist", "subdivisions", "projection"],
+        |r, f| r.cone(f),
+    ),
+    reader(
+        "contact",
+        &["at", "turn", "order", "matrix", "radii", "axis", "in", "pairs"],
+        |r, f| r.contact(f),
+    ),
+    reader("rotate", &["axis"], |r, f| {
+        Some(Law::Rotate(Rotate { axis: r.required_vector(f, "axis", DIRECTION)? }))
+    }),
+    reader("pivot", &["axis", "centres", "path"], |r, f| r.pivot(f)),
+    reader("translate", &["axis"], |r, f| {
+        let axis = r.required_vector(f, "axis", "a direction such as [0, 1, 0]")?;
+        Some(Law::Translate(Translate { axis }))
+    }),
+    reader("ball", &[], |_, _| Some(Law::Ball(Ball))),
+    reader("place", &FRAME, |r, f| Some(Law::Place(Place { child_in_parent: r.frame(f, FRAME) }))),
+    reader("ellipsoid", &["radii", "surface_axis"], |r, f| r.ellipsoid(f)),
+    reader("constant_curvature", &["neutral", "length"], |r, f| r.column(f)),
+    reader("compensate", &["weight"], |r, f| {
+        Some(Law::Compensate(Compensate { weight: r.number_or(f, "weight", 1.0)? }))
+    }),
+    reader("scale", &["axis", "volume"], |r, f| r.scale(f)),
+    reader("shear", &["along", "across"], |r, f| r.shear(f)),
+    reader("curve", &["in", "path", "forward", "up"], |r, f| r.curve(f)),
+    reader("custom", &["law", "parameters"], |r, f| r.custom(f)),
+    reader("product", &[], |_, _| Some(Law::Product(Product))),
+];
+
+// Every kind of law is read.
+const _: () = assert!(READERS.len() == Law::KINDS.len());
+
+const fn reader(
+    name: &'static str,
+    keys: &'static [&'static str],
+    read: fn(&mut ModelReader<'_>, &Fields<'_>) -> Option<Law>,
+) -> LawReader {
+    LawReader { name, keys, read }
+}
+
+/// The keys of a component: its ports and its parameters.
+pub(in crate::document::model) fn component_keys(
+    kind: &Kind,
+) -> impl Iterator<Item = &'static str> {
+    let parameters = READERS.iter().find(|reader| reader.name == kind.name);
+    let parameters = parameters.map_or(&[][..], |reader| reader.keys);
+    kind.ports.iter().map(|port| port.name).chain(parameters.iter().copied())
+}
 
 impl ModelReader<'_> {
     pub(super) fn component(&mut self, draft: &mut Draft, set: &str, entry: &Entry) {
         let name = entry.key.clone();
         let label = format!("joint_set.{set}.component.{}", name.text);
-        let read = self.kind_of(&label, entry).and_then(|(one, known)| {
-            let kind = one.key.text.as_str();
-            let fields = self.table(&one.node, name.spot, format!("{label}.{kind}"), known);
-            self.blueprint(&fields, kind)
+        let read = self.kind_of(&label, entry).and_then(|(one, kind, reader)| {
+            let known: Vec<&str> = component_keys(kind).collect();
+            let label = format!("{label}.{}", kind.name);
+            let fields = self.table(&one.node, name.spot, label, &known);
+            let ports = self.ports(&fields, kind);
+            Some(((reader.read)(self, &fields)?, ports?))
         });
         match read {
-            Some((blueprint, ports)) => {
-                draft.components.push(ComponentDraft {
-                    set: set.to_owned(),
-                    name,
-                    blueprint,
-                    ports,
-                });
+            Some((law, ports)) => {
+                draft.components.push(ComponentDraft { set: set.to_owned(), name, law, ports });
             }
             // Do not report errors again for components that reference this one.
             None => _ = draft.broken.insert((set.to_owned(), name.text)),
         }
     }
 
-    /// The one table of a component, named by its kind, and the keys of that kind.
+    /// The one table of a component, named by its kind.
     fn kind_of<'t>(
         &mut self,
         label: &str,
         entry: &'t Entry,
-    ) -> Option<(&'t Entry, &'static [&'static str])> {
-        let kinds: Vec<&str> = keys::COMPONENTS.iter().map(|(kind, _)| *kind).collect();
+    ) -> Option<(&'t Entry, &'static Kind, &'static LawReader)> {
+        let kinds: Vec<&str> = Law::KINDS.iter().map(|kind| kind.name).collect();
         let [one] = self.entries(&entry.node, label) else {
             if matches!(entry.node.value, Value::Table(_)) {
                 let message = format!("[{label}] must hold exactly one component");
@@ -53,98 +119,57 @@ impl ModelReader<'_> {
             }
             return None;
         };
-        let kind = one.key.text.as_str();
-        if let Some((_, known)) = keys::COMPONENTS.iter().find(|(k, _)| *k == kind) {
-            return Some((one, known));
+        let name = one.key.text.as_str();
+        let kind = Law::KINDS.iter().find(|kind| kind.name == name);
+        if let Some(found) = kind.zip(READERS.iter().find(|reader| reader.name == name)) {
+            return Some((one, found.0, found.1));
         }
         let all = || format!("kinds are: {}", kinds.join(", "));
-        let help = did_you_mean(kind, kinds.iter().copied(), all);
-        let message = format!("unknown kind of component `{kind}`");
+        let help = did_you_mean(name, kinds.iter().copied(), all);
+        let message = format!("unknown kind of component `{name}`");
         self.texts.error(one.key.spot, "model/component", message, help);
         None
     }
 
-    /// The parameters of a component and the names at its ports.
-    fn blueprint(&mut self, fields: &Fields<'_>, kind: &str) -> Option<(Blueprint, Vec<Name>)> {
-        let names = self.ports(fields, kind);
-        let blueprint = match kind {
-            "map" => Blueprint::Map(self.map(fields)?),
-            "combine" => {
-                let wanted = "{ slopes = [...], intercept = 0 }";
-                let node = self.required(fields, "function", wanted)?;
-                Blueprint::Combine(self.several(node, "function")?)
-            }
-            "rotate" => Blueprint::Rotate(self.required_vector(fields, "axis", DIRECTION)?),
-            "translate" => Blueprint::Translate(self.required_vector(
-                fields,
-                "axis",
-                "a direction such as [0, 1, 0]",
-            )?),
-            "depend" => self.depend(fields)?,
-            "cone" => self.cone(fields)?,
-            "contact" => self.contact(fields)?,
-            "pivot" => {
-                let axis = self.required_vector(fields, "axis", DIRECTION);
-                let centre = self.centre(fields)?;
-                Blueprint::Pivot(axis?, centre)
-            }
-            "compensate" => self.compensate(fields)?,
-            "ball" => Blueprint::Ball,
-            "place" => Blueprint::Place(self.frame(fields, FRAME)),
-            "ellipsoid" => self.ellipsoid(fields)?,
-            "constant_curvature" => self.column(fields)?,
-            "scale" => self.scale(fields)?,
-            "shear" => self.shear(fields)?,
-            "curve" => self.curve(fields)?,
-            "custom" => self.custom(fields)?,
-            _ => Blueprint::Product,
-        };
-        Some((blueprint, names?))
-    }
-
     /// The names at the ports of a component, in their order.
-    fn ports(&mut self, fields: &Fields<'_>, kind: &str) -> Option<Vec<Name>> {
-        let single: &[&str] = match kind {
-            "map" => &["input"],
-            "rotate" | "pivot" => &["angle"],
-            "depend" => &["passive", "driver"],
-            "translate" => &["distance"],
-            "ball" => &["orientation"],
-            "ellipsoid" => &["about_x", "about_y", "about_z"],
-            "constant_curvature" => &["about_x", "about_z", "about_y"],
-            "scale" => &["factor"],
-            "shear" => &["amount"],
-            "curve" => &["parameter"],
-            "contact" if fields.get("before").is_some() => &["before"],
-            "cone" if fields.get("orientation").is_some() => &["orientation"],
-            _ => &[],
-        };
+    fn ports(&mut self, fields: &Fields<'_>, kind: &Kind) -> Option<Vec<Name>> {
         let mut names: Vec<Option<Name>> = vec![];
-        for port in single {
-            let wanted = "the name of a coordinate or a component";
-            names.push(self.required(fields, port, wanted).and_then(|n| self.text(n, port)));
-        }
-        let several = match kind {
-            "combine" | "custom" => Some("inputs"),
-            "product" => Some("factors"),
-            "contact" if fields.get("drivers").is_some() => Some("drivers"),
-            "cone" if fields.get("orientation").is_none() => Some("angles"),
-            _ => None,
-        };
-        if let Some(port) = several {
-            let wanted = match kind {
-                "cone" => "the names of three angles (or two), or an `orientation`",
-                _ => "a list of names",
+        for port in kind.ports {
+            let perhaps = matches!(port.arity, Arity::Perhaps | Arity::PerhapsList);
+            if perhaps && fields.get(port.name).is_none() {
+                continue;
+            }
+            let wanted = match (port.takes, port.is_list()) {
+                (PortType::Segment | PortType::Joint, false) => "the name of a segment",
+                (_, false) => "the name of a coordinate or a component",
+                (_, true) => "a list of names",
             };
-            match self.required(fields, port, wanted) {
-                Some(node) => names.extend(self.names(node, port).0.into_iter().map(Some)),
-                None => names.push(None),
+            let node = self.required(fields, port.name, wanted);
+            match node {
+                Some(node) if port.is_list() => {
+                    names.extend(self.names(node, port.name).0.into_iter().map(Some));
+                }
+                node => names.push(node.and_then(|node| self.text(node, port.name))),
             }
         }
         names.into_iter().collect()
     }
 
-    fn depend(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
+    fn pivot(&mut self, fields: &Fields<'_>) -> Option<Law> {
+        let axis = self.required_vector(fields, "axis", DIRECTION);
+        let (centre, axis) = (self.centre(fields)?, axis?);
+        match Pivot::new(axis, centre) {
+            Ok(pivot) => Some(Law::Pivot(pivot)),
+            Err(why) => {
+                let why = why.to_string();
+                let (message, help) = why.split_once(": ").unwrap_or((&why, "change its centres"));
+                self.texts.error(fields.spot, "model/component", message, help);
+                None
+            }
+        }
+    }
+
+    fn depend(&mut self, fields: &Fields<'_>) -> Option<Law> {
         let mut bound = |key: &str| match fields.get(key) {
             Some(node) => self.function(node, key).map(Some),
             None => Some(None),
@@ -154,26 +179,10 @@ impl ModelReader<'_> {
             self.missing(fields, "lower", "`lower`, `upper` or both, as functions of the driver");
             return None;
         }
-        Some(Blueprint::Depend { lower: lower?, upper: upper? })
+        Some(Law::Depend(Depend { lower: lower?, upper: upper? }))
     }
 
-    fn compensate(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
-        let (Some(segment), Some(ancestors)) = (fields.get("segment"), fields.get("ancestors"))
-        else {
-            self.missing(
-                fields,
-                "ancestors",
-                "`segment`, and the `ancestors` whose turns it compensates",
-            );
-            return None;
-        };
-        let segment = self.text(segment, "segment");
-        let ancestors = self.names(ancestors, "ancestors").0;
-        let weight = self.number_or(fields, "weight", 1.0)?;
-        Some(Blueprint::Compensate { segment: segment?, ancestors, weight })
-    }
-
-    fn map(&mut self, fields: &Fields<'_>) -> Option<Vec<Function>> {
+    fn map(&mut self, fields: &Fields<'_>) -> Option<Law> {
         let mut functions = match (fields.get("function"), fields.get("functions")) {
             (Some(node), None) => vec![self.function(node, "function")?],
             (None, Some(node)) => {
@@ -193,6 +202,6 @@ impl ModelReader<'_> {
         let mut unit = |key: &str| fields.get(key).map_or(Some(1.0), |n| self.unit_of(n, key));
         let (argument, value) = (unit("in")?, unit("out")?);
         functions = functions.into_iter().map(|f| rescaled(f, argument, value)).collect();
-        Some(functions)
+        Some(Law::Map(Map { functions }))
     }
 }

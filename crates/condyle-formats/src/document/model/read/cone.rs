@@ -2,19 +2,20 @@
 
 use super::ModelReader;
 use crate::document::fields::Fields;
-use crate::document::model::blueprint::{Blueprint, Held};
 use crate::document::model::keys;
 use crate::document::texts::Spot;
 use crate::document::tree::{Node, Value};
 use condyle_math::{EulerOrder, Vec3};
+use condyle_model::Law;
+use condyle_model::component::{JointCone, Swinging};
 use condyle_model::limit::{Cone, ConeError, ConePoint, Projection};
 
 /// How often the number of points is doubled by default.
 const SUBDIVISIONS: u32 = 2;
 
 impl ModelReader<'_> {
-    pub(super) fn cone(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
-        let held = self.held(fields);
+    pub(super) fn cone(&mut self, fields: &Fields<'_>) -> Option<Law> {
+        let of = self.swinging(fields);
         let rest = self.required_vector(
             fields,
             "rest",
@@ -30,7 +31,7 @@ impl ModelReader<'_> {
         let projection = self.word(fields, "projection", &words);
         let (rest, twist, subdivisions) = (rest?, twist?, subdivisions?);
         match Cone::new(rest, twist, points?, subdivisions, projection?) {
-            Ok(cone) => Some(Blueprint::Cone(held?, cone)),
+            Ok(cone) => Some(Law::Cone(JointCone { of: of?, cone })),
             Err(error) => {
                 let (spot, message, help) = refused(fields, error);
                 self.texts.error(spot, "model/cone", message, help);
@@ -40,16 +41,17 @@ impl ModelReader<'_> {
     }
 
     /// What the cone holds: an orientation, or angles about axes.
-    fn held(&mut self, fields: &Fields<'_>) -> Option<Held> {
+    fn swinging(&mut self, fields: &Fields<'_>) -> Option<Swinging> {
         if fields.get("orientation").is_some() {
             for key in ["angles", "axes", "order"] {
                 let Some(node) = fields.get(key) else { continue };
                 self.exclusive(node, "orientation", key);
                 return None;
             }
-            return Some(Held::Orientation);
+            return Some(Swinging::Orientation);
         }
-        let count = match &fields.get("angles")?.value {
+        let wanted = "the names of three angles (or two), or an `orientation`";
+        let count = match &self.required(fields, "angles", wanted)?.value {
             Value::List(list) => list.len(),
             _ => 1,
         };
@@ -76,8 +78,8 @@ impl ModelReader<'_> {
             }
         };
         match (count, &axes.1[..]) {
-            (3, &[a, b, c]) => Some(Held::Three([a, b, c])),
-            (2, &[a, b]) => Some(Held::Two([a, b])),
+            (3, &[a, b, c]) => Some(Swinging::Angles([a, b, c])),
+            (2, &[a, b]) => Some(Swinging::Directions([a, b])),
             (_, list) => {
                 let message = format!("`axes` has {} directions for {count} angles", list.len());
                 self.length(axes.0, message, format!("give {count}"));

@@ -4,20 +4,14 @@ use super::FRAME;
 use super::ModelReader;
 use super::component::DIRECTION;
 use crate::document::fields::Fields;
-use crate::document::model::blueprint::Blueprint;
 use crate::document::model::keys;
-use crate::document::texts::Name;
 use crate::document::tree::{Node, Value};
 use condyle_math::{Affine, Vec3};
-use condyle_model::component::{ContactPair, Gliding};
+use condyle_model::Law;
+use condyle_model::component::{Contact, ContactPair, Gliding};
 
 impl ModelReader<'_> {
-    pub(super) fn contact(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
-        let mut named = |key: &str, wanted: &str| -> Option<Name> {
-            self.required(fields, key, wanted).and_then(|node| self.text(node, key))
-        };
-        let segment = named("segment", "the segment that glides");
-        let surface = named("surface", "the segment that carries the ellipsoid");
+    pub(super) fn contact(&mut self, fields: &Fields<'_>) -> Option<Law> {
         let pose = self.rigid(fields);
         let radii = self.required_vector(fields, "radii", "three half axes in metres");
         let axis = self.required_vector(fields, "axis", DIRECTION);
@@ -54,9 +48,8 @@ impl ModelReader<'_> {
             let (message, help) = said.split_once(": ").unwrap_or((&said, "change these numbers"));
             self.texts.error(*spot, "model/contact", message, help);
         }
-        let gliding = Gliding::new(pose?, radii?, axis?, pairs?.1).ok()?;
-        let before = fields.get("before").is_some();
-        Some(Blueprint::Contact { segment: segment?, surface: surface?, before, gliding })
+        let law = Gliding::new(pose?, radii?, axis?, pairs?.1).ok()?;
+        Some(Law::Contact(Contact { before: fields.get("before").is_some(), law }))
     }
 
     /// A frame without stretch or shear.

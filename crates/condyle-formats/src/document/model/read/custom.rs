@@ -2,19 +2,19 @@
 
 use super::ModelReader;
 use crate::document::fields::Fields;
-use crate::document::model::blueprint::Blueprint;
 use crate::document::tree::Value;
 use condyle_diagnostics::did_you_mean;
+use condyle_model::Law;
 use condyle_model::component::Parameters;
 
 impl ModelReader<'_> {
-    pub(super) fn custom(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
+    pub(super) fn custom(&mut self, fields: &Fields<'_>) -> Option<Law> {
         let parameters = self.parameters(fields);
         let node = self.required(fields, "law", "the name of a registered law")?;
         let law = self.text(node, "law")?;
         let Some(wanted) = self.laws.inputs(&law.text) else {
             // The registry's message lists its laws.
-            let refused = self.laws.make(&law.text, Parameters::new(), vec![]);
+            let refused = self.laws.make(&law.text, Parameters::new());
             let message = refused.err().unwrap_or_else(|| format!("unknown law `{}`", law.text));
             let otherwise = || "register it in the program that reads this document".to_owned();
             let help = did_you_mean(&law.text, self.laws.names(), otherwise);
@@ -37,8 +37,8 @@ impl ModelReader<'_> {
             self.texts.error(spot, "model/arity", message, help);
             sound = false;
         }
-        match self.laws.make(&law.text, parameters?, vec![]) {
-            Ok(custom) => Some(Blueprint::Custom(custom)).filter(|_| sound),
+        match self.laws.make(&law.text, parameters?) {
+            Ok(custom) => Some(Law::Custom(custom)).filter(|_| sound),
             Err(why) => {
                 let spot = fields.get("parameters").map_or(fields.spot, |node| node.spot);
                 let message = format!("law `{}` does not accept its parameters: {why}", law.text);

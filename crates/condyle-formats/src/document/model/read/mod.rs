@@ -10,12 +10,14 @@ mod posture;
 mod shape;
 mod size;
 
+pub(super) use component::component_keys;
+
 use crate::document::fields::{Fields, Reader};
 use crate::document::model::draft::{CoordinateDraft, Draft, OutputDraft, SegmentDraft};
 use crate::document::model::keys;
 use crate::document::model::mirror::Mirror;
 use crate::document::tree::{Entry, Node};
-use condyle_model::component::Registry;
+use condyle_model::component::{Reflection, Registry};
 use condyle_model::{CoordinateKind, UpAxis};
 use std::ops::{Deref, DerefMut};
 
@@ -91,13 +93,14 @@ impl ModelReader<'_> {
             self.texts.error(from.spot, "model/mirror", message, help);
             return None;
         }
-        let Some(axis) = ["x", "y", "z"].iter().position(|a| *a == plane.text) else {
+        let axis = ["x", "y", "z"].iter().position(|a| *a == plane.text);
+        let Some(axis) = axis.and_then(Reflection::new) else {
             let message = format!("unknown mirror plane `{}`", plane.text);
             let help = "give the axis normal to it: \"x\", \"y\" or \"z\"";
             self.texts.error(plane.spot, "model/mirror", message, help);
             return None;
         };
-        Some(Mirror { axis, from: from.text, to: to.text })
+        Some(Mirror { reflection: axis, from: from.text, to: to.text })
     }
 
     fn segment(&mut self, draft: &mut Draft, entry: &Entry) {

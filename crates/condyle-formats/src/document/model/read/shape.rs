@@ -2,12 +2,14 @@
 
 use super::ModelReader;
 use crate::document::fields::Fields;
-use crate::document::model::blueprint::Blueprint;
 use crate::document::model::keys;
 use crate::document::tree::Node;
 use condyle_math::Vec3;
 use condyle_math::function::SimmSpline;
-use condyle_model::component::{Along, Centre, Heading, SurfaceAxis};
+use condyle_model::Law;
+use condyle_model::component::{
+    Along, Centre, ConstantCurvature, Curve, Ellipsoid, Heading, Scale, Shear, SurfaceAxis,
+};
 
 impl ModelReader<'_> {
     /// The centre of a pivot: one point for each interval, or a smooth path.
@@ -55,7 +57,7 @@ impl ModelReader<'_> {
     }
 
     /// A path, and how a segment turns with it.
-    pub(in super::super) fn curve(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
+    pub(in super::super) fn curve(&mut self, fields: &Fields<'_>) -> Option<Law> {
         let unit = fields.get("in").map_or(Some(1.0), |n| self.unit_of(n, "in"));
         let wanted = "three lists of [parameter, place]: for x, y and z";
         let node = self.required(fields, "path", wanted);
@@ -77,17 +79,17 @@ impl ModelReader<'_> {
                 return None;
             }
         };
-        Some(Blueprint::Curve { path: path?, heading })
+        Some(Law::Curve(Curve { path: path?, heading }))
     }
 
-    pub(in super::super) fn ellipsoid(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
+    pub(in super::super) fn ellipsoid(&mut self, fields: &Fields<'_>) -> Option<Law> {
         let radii = self.required_vector(fields, "radii", "three half axes in metres");
         let words = [("opensim", SurfaceAxis::OpenSim), ("normal", SurfaceAxis::Normal)];
         let axis = self.word(fields, "surface_axis", &words);
-        Some(Blueprint::Ellipsoid(radii?, axis?))
+        Some(Law::Ellipsoid(Ellipsoid { radii: radii?, axis: axis? }))
     }
 
-    pub(super) fn column(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
+    pub(super) fn column(&mut self, fields: &Fields<'_>) -> Option<Law> {
         let neutral = match fields.get("neutral") {
             Some(node) => {
                 let unit = self.angle_unit(node.spot);
@@ -96,11 +98,12 @@ impl ModelReader<'_> {
             None => [0.0; 3],
         };
         let length = self.required(fields, "length", "the length of the arc in metres")?;
-        Some(Blueprint::ConstantCurvature { neutral, length: self.number(length, "length")? })
+        let length = self.number(length, "length")?;
+        Some(Law::ConstantCurvature(ConstantCurvature { neutral, length }))
     }
 
     /// A uniform scale, or one along an axis, with or without constant volume.
-    pub(in super::super) fn scale(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
+    pub(in super::super) fn scale(&mut self, fields: &Fields<'_>) -> Option<Law> {
         let volume = self.flag(fields.get("volume"), "volume", false);
         let along = match fields.get("axis") {
             Some(node) => {
@@ -113,13 +116,13 @@ impl ModelReader<'_> {
             }
             None => Along::Everywhere,
         };
-        Some(Blueprint::Scale(along))
+        Some(Law::Scale(Scale { along }))
     }
 
-    pub(in super::super) fn shear(&mut self, fields: &Fields<'_>) -> Option<Blueprint> {
+    pub(in super::super) fn shear(&mut self, fields: &Fields<'_>) -> Option<Law> {
         let along = self.required_vector(fields, "along", "the direction in which layers slide");
         let across =
             self.required_vector(fields, "across", "the direction in which layers are stacked");
-        Some(Blueprint::Shear { along: along?, across: across? })
+        Some(Law::Shear(Shear { along: along?, across: across? }))
     }
 }

@@ -3,57 +3,42 @@
 use super::{Writer, frame, function, key, knots, line, number, numbers, several_of, text, vector};
 use condyle_math::Vec3;
 use condyle_math::function::SimmSpline;
-use condyle_model::SegmentId;
 use condyle_model::component::{
-    Along, Centre, Component, Contact, Curve, Custom, JointCone, SurfaceAxis, Swinging,
+    Along, Arity, Centre, Component, Contact, Curve, Custom, JointCone, Law, SurfaceAxis, Swinging,
 };
 use condyle_model::limit::{ConePoint, Projection};
 use std::fmt::Write;
 
-/// The port that takes a list of names.
-fn list_port(component: &Component) -> Option<&'static str> {
-    match component {
-        Component::Combine(_) | Component::Custom(_) => Some("inputs"),
-        Component::Product(_) => Some("factors"),
-        Component::Contact(_) => Some("drivers"),
-        Component::Cone(JointCone { of: Swinging::Orientation(_), .. }) => None,
-        Component::Cone(_) => Some("angles"),
-        _ => None,
-    }
-}
-
 impl Writer<'_> {
-    pub(super) fn component(&mut self, set: usize, component: &Component) {
-        let several = list_port(component);
-        let mut listed = vec![];
-        for (port, _, source) in component.inputs() {
-            let name = self.port(Some(set), source);
-            if several == Some(port) {
-                listed.push(name);
-            } else {
-                line!(self, "{port} = {name}");
+    pub(super) fn component(&mut self, component: &Component) {
+        let set = component.joint_set.index();
+        for (port, signals) in component.by_port() {
+            let names: Vec<String> =
+                signals.iter().map(|&signal| self.port(Some(set), signal)).collect();
+            let name = port.name;
+            if !port.is_list() {
+                names.iter().for_each(|one| line!(self, "{name} = {one}"));
+            } else if port.arity == Arity::List || !names.is_empty() {
+                line!(self, "{name} = [{}]", names.join(", "));
             }
         }
-        if let Some(port) = several {
-            line!(self, "{port} = [{}]", listed.join(", "));
-        }
-        match component {
-            Component::Map(c) => match &c.functions[..] {
+        match &component.law {
+            Law::Map(c) => match &c.functions[..] {
                 [one] => line!(self, "function = {}", function(one)),
                 list => {
                     let list: Vec<String> = list.iter().map(function).collect();
                     line!(self, "functions = [{}]", list.join(", "));
                 }
             },
-            Component::Combine(c) => line!(self, "function = {}", several_of(&c.function)),
-            Component::Depend(c) => {
+            Law::Combine(c) => line!(self, "function = {}", several_of(&c.function)),
+            Law::Depend(c) => {
                 for (side, f) in [("lower", &c.lower), ("upper", &c.upper)] {
                     if let Some(f) = f {
                         line!(self, "{side} = {}", function(f));
                     }
                 }
             }
-            Component::Pivot(c) => {
+            Law::Pivot(c) => {
                 line!(self, "axis = {}", vector(c.axis()));
                 match c.centre() {
                     Centre::Intervals(list) => {
@@ -67,35 +52,28 @@ impl Writer<'_> {
                     Centre::Path(splines) => self.path(splines),
                 }
             }
-            Component::Compensate(c) => {
-                let name = |id: SegmentId| text(&self.model.segment(id).name);
-                let segment = name(c.segment);
-                let ancestors: Vec<String> = c.ancestors.iter().map(|id| name(*id)).collect();
-                line!(self, "segment = {segment}");
-                line!(self, "ancestors = [{}]", ancestors.join(", "));
-                line!(self, "weight = {}", number(c.weight));
-            }
-            Component::Rotate(c) => line!(self, "axis = {}", vector(c.axis)),
-            Component::Translate(c) => line!(self, "axis = {}", vector(c.axis)),
-            Component::Place(c) => {
+            Law::Compensate(c) => line!(self, "weight = {}", number(c.weight)),
+            Law::Rotate(c) => line!(self, "axis = {}", vector(c.axis)),
+            Law::Translate(c) => line!(self, "axis = {}", vector(c.axis)),
+            Law::Place(c) => {
                 for part in frame(c.child_in_parent) {
                     line!(self, "{part}");
                 }
             }
-            Component::Ellipsoid(c) => {
+            Law::Ellipsoid(c) => {
                 line!(self, "radii = {}", vector(c.radii));
                 if c.axis == SurfaceAxis::Normal {
                     line!(self, "surface_axis = \"normal\"");
                 }
             }
-            Component::ConstantCurvature(c) => {
+            Law::ConstantCurvature(c) => {
                 line!(self, "neutral = {}", numbers(&c.neutral));
                 line!(self, "length = {}", number(c.length));
             }
-            Component::Ball(_) | Component::Product(_) => {}
-            Component::Cone(c) => self.cone(c),
-            Component::Contact(c) => self.contact(c),
-            Component::Scale(c) => {
+            Law::Ball(_) | Law::Product(_) => {}
+            Law::Cone(c) => self.cone(c),
+            Law::Contact(c) => self.contact(c),
+            Law::Scale(c) => {
                 if let Some(axis) = c.along.axis() {
                     line!(self, "axis = {}", vector(axis));
                 }
@@ -103,12 +81,12 @@ impl Writer<'_> {
                     line!(self, "volume = true");
                 }
             }
-            Component::Shear(c) => {
+            Law::Shear(c) => {
                 line!(self, "along = {}", vector(c.along));
                 line!(self, "across = {}", vector(c.across));
             }
-            Component::Curve(c) => self.curve(c),
-            Component::Custom(c) => self.custom(c),
+            Law::Curve(c) => self.curve(c),
+            Law::Custom(c) => self.custom(c),
         }
     }
 
@@ -136,9 +114,9 @@ impl Writer<'_> {
 
     fn cone(&mut self, JointCone { of, cone }: &JointCone) {
         let axes: &[Vec3] = match of {
-            Swinging::Angles(_, axes) => axes,
-            Swinging::Directions(_, axes) => axes,
-            Swinging::Orientation(_) => &[],
+            Swinging::Angles(axes) => axes,
+            Swinging::Directions(axes) => axes,
+            Swinging::Orientation => &[],
         };
         if !axes.is_empty() {
             let axes: Vec<String> = axes.iter().map(|axis| vector(*axis)).collect();
@@ -161,10 +139,6 @@ impl Writer<'_> {
     }
 
     fn contact(&mut self, contact: &Contact) {
-        for (key, id) in [("segment", contact.segment), ("surface", contact.surface)] {
-            let name = text(&self.model.segment(id).name);
-            line!(self, "{key} = {name}");
-        }
         for part in frame(contact.law.ellipsoid_in_surface()) {
             line!(self, "{part}");
         }

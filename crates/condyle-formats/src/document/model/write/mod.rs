@@ -80,12 +80,12 @@ impl Writer<'_> {
                 line!(self, "stiffness = {}", number(posture.stiffness));
             }
         }
-        for (index, named) in model.components().iter().enumerate() {
-            let set = key(&self.set(named.joint_set.index()));
+        for (index, component) in model.components().iter().enumerate() {
+            let set = key(&self.set(component.joint_set.index()));
             let name = key(&self.components[index]);
-            let kind = named.component.kind();
+            let kind = component.law.kind().name;
             line!(self, "\n[joint_set.{set}.component.{name}.{kind}]");
-            self.component(named.joint_set.index(), &named.component);
+            self.component(component);
         }
         for (index, set) in model.joint_sets().iter().enumerate() {
             let moved = model.segments().iter().filter_map(|segment| {
@@ -211,6 +211,7 @@ impl Writer<'_> {
                 let set = self.model.components()[id.index()].joint_set.index();
                 (set, self.components[id.index()].as_str(), output)
             }
+            Signal::Segment(id) => return text(&self.model.segment(id).name),
         };
         let name = escaped(name);
         let set_name = escaped(&self.set(set));
