@@ -223,7 +223,7 @@ pub fn kinds() -> Vec<Kind> {
             let [lift, turn] = ["lift", "turn"].map(|name| angle(b, set, name));
             // The segment before this one carries the ribs.
             let surface = b.segment_at(segment.index() - 1).unwrap_or(segment);
-            let contact = Law::Contact(Contact { before: true, law: gliding() });
+            let contact = Law::Contact(Contact { before: true, most_gap: None, law: gliding() });
             let inputs = vec![segment.into(), surface.into(), before, lift, turn];
             let glide = b.component(set, "glide", contact, inputs);
             b.product(set, "product", vec![before, glide])

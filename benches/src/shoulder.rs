@@ -86,7 +86,7 @@ pub fn network() -> Model {
     let upward = b.map(set, "rhythm", output(arm, 1), Function::linear(0.33, 0.0));
     let rotate = b.rotate(set, "upward", upward, Vec3::new(0.9, 0.1, 0.42));
     let before = b.product(set, "before_contact", vec![undo, rotate]);
-    let contact = Law::Contact(Contact { before: true, law: gliding() });
+    let contact = Law::Contact(Contact { before: true, most_gap: None, law: gliding() });
     let inputs = vec![scapula.into(), thorax.into(), before, output(held, 1), upward];
     let glide = b.component(set, "glide", contact, inputs);
     let scapula_motion = b.product(set, "scapula_motion", vec![before, glide]);

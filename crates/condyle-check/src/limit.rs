@@ -3,7 +3,8 @@
 use super::{Inspected, amount, finding, length, real_range};
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_model::CoordinateKind;
-use condyle_model::component::{Component, JointCone, Law, Signal, Swinging};
+use condyle_model::component::{Component, Signal};
+use condyle_model::limit::Limit;
 
 /// A posture within this distance, in radians, of a discontinuity of the projection is reported:
 /// half a degree.
@@ -18,8 +19,8 @@ const TOUCHING: f64 = 1e-5;
 /// Cones whose projection jumps inside the declared ranges, contacts that do not touch by default.
 pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     for component in subject.model.components() {
-        if let Law::Cone(cone) = &component.law {
-            findings.extend(jump(subject, component, cone));
+        if let Some(limit) = component.law.limit() {
+            findings.extend(jump(subject, component, limit));
         }
     }
     for (number, id) in subject.program.contacts().enumerate() {
@@ -43,10 +44,7 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
 }
 
 /// The posture inside the declared ranges that is nearest to a discontinuity of the projection.
-fn jump(subject: &Inspected<'_>, component: &Component, cone: &JointCone) -> Option<Diagnostic> {
-    if let Swinging::Orientation = cone.of {
-        return None;
-    }
+fn jump(subject: &Inspected<'_>, component: &Component, limit: &dyn Limit) -> Option<Diagnostic> {
     let name = &component.name;
     let mut ranges = vec![];
     for source in &component.inputs {
@@ -62,7 +60,7 @@ fn jump(subject: &Inspected<'_>, component: &Component, cone: &JointCone) -> Opt
             lower + (upper - lower) * step
         });
         let numbers: Vec<f64> = numbers.collect();
-        let margin = cone.margin(&numbers);
+        let margin = limit.margin(&numbers);
         if margin < worst.0 {
             worst = (margin, numbers);
         }

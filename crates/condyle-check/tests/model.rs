@@ -489,7 +489,7 @@ fn a_contact_that_floats() {
         let pair = ContactPair { first: Vec3::Y * 0.1, second: Vec3::Z * 0.1, at: [0.0; 2] };
         let law = Gliding::new(Affine::IDENTITY, Vec3::new(0.1, 0.1, 0.1), Vec3::Z, vec![pair]);
         let set = b.joint_set("glide");
-        let contact = Law::Contact(Contact { before: false, law: law.unwrap() });
+        let contact = Law::Contact(Contact { before: false, most_gap: None, law: law.unwrap() });
         let glide = b.component(set, "glide", contact, vec![scapula.into(), thorax.into()]);
         b.output(set, scapula, glide);
         b

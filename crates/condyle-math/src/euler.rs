@@ -18,7 +18,7 @@
 //! At the singular angle (gimbal lock: b = ±90° for i-j-k; 0° or 180° for i-j-i) only a + c or a -
 //! c is determined; c = 0 is returned there.
 
-use crate::{Mat3, Vec3};
+use crate::{Mat3, Scalar, Vec3};
 use std::fmt;
 use std::str::FromStr;
 
@@ -82,31 +82,40 @@ impl EulerOrder {
     ///
     /// The outer two are in (-π, π]. The middle one is in [-π/2, π/2] for three different axes, and
     /// in [0, π] where the third axis equals the first. At a singular angle the third is 0.
-    pub fn from_mat3(self, rotation: Mat3) -> [f64; 3] {
+    pub fn from_mat3<S: Scalar>(self, rotation: Mat3<S>) -> [S; 3] {
         let [i, j, last] = self.axes();
         let k = 3 - i - j;
         // j follows i cyclically for an even permutation.
-        let e = if (j + 3 - i) % 3 == 1 { 1.0 } else { -1.0 };
-        let m = |r: usize, c: usize| rotation.at(r, c);
+        let e = S::from_f64(if (j + 3 - i) % 3 == 1 { 1.0 } else { -1.0 });
+        let columns = [rotation.x, rotation.y, rotation.z].map(|column| column.to_array());
+        let m = |r: usize, c: usize| columns[c][r];
+        let least = S::from_f64(SINGULAR_BELOW);
+        // The length of (a, b), with a derivative at 0 as well, which is not used.
+        let length = |a: S, b: S| {
+            let square = a * a + b * b;
+            let tiny = S::from_f64(1e-300);
+            let root = square.select_less(tiny, S::one(), square).sqrt();
+            square.select_less(tiny, S::zero(), root)
+        };
         // With c = 0, R = Ri(a)·Rj(b). Rj keeps its own axis, so column j of R is that of Ri(a):
         // R_jj = cos a, R_kj = e·sin a.
         let alone = || (e * m(k, j)).atan2(m(j, j));
         if last == k {
             // |cos b| from two entries, and atan2 instead of asin: asin loses digits near ±90°.
-            let cosine = m(i, i).hypot(m(i, j));
+            let cosine = length(m(i, i), m(i, j));
             let b = (e * m(i, k)).atan2(cosine);
-            if cosine < SINGULAR_BELOW {
-                return [alone(), b, 0.0];
-            }
-            [(-e * m(j, k)).atan2(m(k, k)), b, (-e * m(i, j)).atan2(m(i, i))]
+            let first = (-e * m(j, k)).atan2(m(k, k));
+            let third = (-e * m(i, j)).atan2(m(i, i));
+            let pick = |singular: S, plain: S| cosine.select_less(least, singular, plain);
+            [pick(alone(), first), b, pick(S::zero(), third)]
         } else {
             // |sin b| likewise: acos loses digits near 0° and 180°.
-            let sine = m(i, j).hypot(m(i, k));
+            let sine = length(m(i, j), m(i, k));
             let b = sine.atan2(m(i, i));
-            if sine < SINGULAR_BELOW {
-                return [alone(), b, 0.0];
-            }
-            [m(j, i).atan2(-e * m(k, i)), b, m(i, j).atan2(e * m(i, k))]
+            let first = m(j, i).atan2(-e * m(k, i));
+            let third = m(i, j).atan2(e * m(i, k));
+            let pick = |singular: S, plain: S| sine.select_less(least, singular, plain);
+            [pick(alone(), first), b, pick(S::zero(), third)]
         }
     }
 

@@ -9,12 +9,16 @@
 //! distance of the direction from the boundary, and those of the twist from its lower and its upper
 //! bound.
 //!
-//! The second axis must be perpendicular to both others: then every rotation has angles,
+//! If the second axis is perpendicular to both others, every rotation has angles,
 //!
 //! ```text
 //! w = R·a₃,  λ = angle from a₁ to a₃ about a₂
 //! cos(θ₂ + λ) = w·a₁,  θ₁ = atan2(±w·a₂, ∓w·(a₁ × a₂)),  θ₃ = the remaining rotation about a₃
 //! ```
+//!
+//! Oblique axes, as those of real joints are, do not reach every rotation. Their angles are found by
+//! Gauss-Newton steps from the requested ones; where the legal rotation is out of their reach, they are
+//! pulled toward zero until the cone allows them.
 //!
 //! With two angles the bone has no third rotation: the rest direction is used for a₃.
 //!
@@ -22,7 +26,7 @@
 //! open mode.
 
 use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
-use crate::limit::{Cone, ConePoint};
+use crate::limit::{Cone, ConePoint, Limit, MOST_ROWS, Row};
 use condyle_math::{Mat3, Quat, Scalar, Vec3};
 use std::f64::consts::TAU;
 
@@ -47,16 +51,7 @@ pub enum Swinging {
     Orientation,
 }
 
-/// One limit row of a cone: its value, and its derivative along each angle or tangent.
-pub(crate) type ConeRow = (f64, [f64; 3]);
-
 impl JointCone {
-    /// The number of limit rows.
-    pub fn rows(&self) -> usize {
-        let twisting = !matches!(self.of, Swinging::Directions(_));
-        if twisting && self.cone.twist_at_rest().is_some() { 3 } else { 1 }
-    }
-
     /// The three axes, with the rest direction as third for two angles; `None` for an orientation.
     fn axes(&self) -> Option<[Vec3; 3]> {
         match &self.of {
@@ -67,7 +62,7 @@ impl JointCone {
     }
 
     /// The sine of the larger deviation of the second axis from perpendicular to the others.
-    pub fn obliqueness(&self) -> f64 {
+    fn obliqueness(&self) -> f64 {
         self.axes().map_or(0.0, |axes| {
             let [a, b, c] = axes.map(Vec3::normalized);
             let (one, other) = (a.dot(b).abs(), c.dot(b).abs());
@@ -92,23 +87,6 @@ impl JointCone {
         (turned, moving)
     }
 
-    /// A measure, in radians, of the distance of these numbers (angles in radians, or x, y, z, w)
-    /// to the nearest ones where their legal numbers are discontinuous; infinite if they are legal.
-    ///
-    /// # Panics
-    /// If there are fewer numbers than inputs.
-    pub fn margin(&self, numbers: &[f64]) -> f64 {
-        let rotation = self.turned(numbers);
-        if let Swinging::Directions(_) = self.of {
-            let direction = rotation * self.cone.rest();
-            return match self.cone.contains(direction) {
-                true => f64::INFINITY,
-                false => self.cone.project(direction).margin,
-            };
-        }
-        self.cone.legal(rotation).margin
-    }
-
     /// The rotation of these numbers.
     fn turned(&self, numbers: &[f64]) -> Mat3 {
         let Some(axes) = self.axes() else { return self.rotation(numbers).0 };
@@ -117,35 +95,13 @@ impl JointCone {
         if numbers.len() > 2 { swing * turn(2) } else { swing }
     }
 
-    /// The legal numbers for the requested ones; `None` if those are legal.
-    pub(crate) fn legal(&self, asked: &[f64]) -> Option<[f64; 4]> {
-        let rotation = self.turned(asked);
-        if let Swinging::Directions(_) = self.of {
-            let direction = rotation * self.cone.rest();
-            if self.cone.contains(direction) {
-                return None;
-            }
-            return Some(self.angles(self.cone.project(direction).direction, None, asked));
-        }
-        let legal = self.cone.legal(rotation);
-        if !legal.moved {
-            return None;
-        }
-        Some(match self.axes() {
-            Some([.., third]) => self.angles(legal.rotation * third, Some(legal.rotation), asked),
-            None => {
-                // Of q and -q the one nearer to the requested quaternion.
-                let q = Quat::from_mat3(legal.rotation).to_array();
-                let same: f64 = q.iter().zip(asked).map(|(a, b)| a * b).sum();
-                if same < 0.0 { q.map(|x| -x) } else { q }
-            }
-        })
-    }
-
     /// The angles that rotate the third axis to `w` (and give `rotation`), nearest to the requested
     /// ones.
     fn angles(&self, w: Vec3, rotation: Option<Mat3>, asked: &[f64]) -> [f64; 4] {
         let Some([a, b, c]) = self.axes() else { return [0.0, 0.0, 0.0, 1.0] };
+        if self.obliqueness() > 1e-6 {
+            return self.oblique_angles(w, rotation, asked);
+        }
         // a, b and a × b are a right-handed basis, because b is perpendicular to a.
         let beside = a.cross(b);
         let lead = b.dot(a.cross(c)).atan2(a.dot(c));
@@ -172,26 +128,116 @@ impl JointCone {
         let ((far, found), (other_far, other)) = (solve(1.0), solve(-1.0));
         if other_far < far { other } else { found }
     }
+}
 
-    /// Converts derivatives along the tangents of an orientation to derivatives along its four
-    /// stored numbers; angles pass unchanged.
-    ///
-    /// δ = 2·vec(q*·q̇)/|q|², with q* the conjugate, so s·δ = 2·((w·s - s × v)·v̇ - (s·v)·ẇ)/|q|².
-    pub(crate) fn stored_slopes(&self, numbers: &[f64], s: [f64; 3]) -> [f64; 4] {
-        if !matches!(self.of, Swinging::Orientation) {
-            return [s[0], s[1], s[2], 0.0];
+impl JointCone {
+    /// As [`JointCone::angles`], for axes of which the second is not perpendicular to the others.
+    fn oblique_angles(&self, w: Vec3, rotation: Option<Mat3>, asked: &[f64]) -> [f64; 4] {
+        let count = asked.len().min(3);
+        let mut angles = [0.0; 4];
+        angles[..count].copy_from_slice(&asked[..count]);
+        for _ in 0..50 {
+            let (turned, mut moving) = self.rotation(&angles[..count]);
+            // The rotation that is left, about an axis in the parent.
+            let left = match rotation {
+                Some(rotation) => (rotation * turned.transpose()).log(),
+                None => {
+                    let at = turned * self.cone.rest();
+                    let about = at.cross(w);
+                    about * (about.norm().atan2(at.dot(w)) / about.norm().max(1e-300))
+                }
+            };
+            if left.norm() < 1e-14 {
+                break;
+            }
+            if rotation.is_none() {
+                // Turning about the bone itself does not move its direction.
+                let at = turned * self.cone.rest();
+                moving = moving.map(|axis| axis - at * at.dot(axis));
+            }
+            moving[count..].fill(Vec3::ZERO);
+            // Damped a little, where the axes are nearly parallel.
+            let normal = |k: usize| Vec3::from(moving.map(|axis| axis.dot(moving[k])));
+            let damped = Vec3::UNITS.map(|unit| unit * 1e-9);
+            let matrix = Mat3::from_columns(
+                normal(0) + damped[0],
+                normal(1) + damped[1],
+                normal(2) + damped[2],
+            );
+            let step = matrix.inverse() * Vec3::from(moving.map(|axis| axis.dot(left)));
+            for (angle, step) in angles[..count].iter_mut().zip(step.to_array()) {
+                *angle += step.clamp(-0.5, 0.5);
+            }
         }
-        let q: [f64; 4] = std::array::from_fn(|i| numbers[i]);
-        let (v, s) = (Vec3::new(q[0], q[1], q[2]), Vec3::from(s));
-        let square = q.iter().map(|x| x * x).sum::<f64>().max(1e-300);
-        let along = (s * q[3] - s.cross(v)) * (2.0 / square);
-        [along.x, along.y, along.z, -2.0 * s.dot(v) / square]
+        let allowed = |angles: &[f64]| {
+            self.rows_at(angles).iter().take(self.rows()).all(|(value, _)| *value >= -1e-9)
+        };
+        if allowed(&angles[..count]) {
+            return angles;
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if allowed(&angles.map(|angle| angle * middle)[..count]) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        angles.map(|angle| angle * low)
+    }
+}
+
+impl Limit for JointCone {
+    fn rows(&self) -> usize {
+        let twisting = !matches!(self.of, Swinging::Directions(_));
+        if twisting && self.cone.twist_at_rest().is_some() { 3 } else { 1 }
     }
 
-    /// The limit rows with their derivatives; the first [`JointCone::rows`] of the three are used.
-    pub(crate) fn open_rows(&self, numbers: &[f64]) -> [ConeRow; 3] {
+    /// The distance of the direction from the boundary, of the twist from its lower and from its upper
+    /// bound.
+    fn rows_at(&self, numbers: &[f64]) -> [Row; MOST_ROWS] {
         let (rotation, moving) = self.rotation(numbers);
-        self.cone.rows(rotation).map(|(value, along)| (value, moving.map(|axis| along.dot(axis))))
+        self.cone.rows(rotation).map(|(value, along)| {
+            let [a, b, c] = moving.map(|axis| along.dot(axis));
+            (value, [a, b, c, 0.0])
+        })
+    }
+
+    fn legal(&self, asked: &[f64]) -> Option<[f64; 4]> {
+        let rotation = self.turned(asked);
+        if let Swinging::Directions(_) = self.of {
+            let direction = rotation * self.cone.rest();
+            if self.cone.contains(direction) {
+                return None;
+            }
+            return Some(self.angles(self.cone.project(direction).direction, None, asked));
+        }
+        let legal = self.cone.legal(rotation);
+        if !legal.moved {
+            return None;
+        }
+        Some(match self.axes() {
+            Some([.., third]) => self.angles(legal.rotation * third, Some(legal.rotation), asked),
+            None => {
+                // Of q and -q the one nearer to the requested quaternion.
+                let q = Quat::from_mat3(legal.rotation).to_array();
+                let same: f64 = q.iter().zip(asked).map(|(a, b)| a * b).sum();
+                if same < 0.0 { q.map(|x| -x) } else { q }
+            }
+        })
+    }
+
+    fn margin(&self, numbers: &[f64]) -> f64 {
+        let rotation = self.turned(numbers);
+        if let Swinging::Directions(_) = self.of {
+            let direction = rotation * self.cone.rest();
+            return match self.cone.contains(direction) {
+                true => f64::INFINITY,
+                false => self.cone.project(direction).margin,
+            };
+        }
+        self.cone.legal(rotation).margin
     }
 }
 
@@ -206,6 +252,10 @@ impl JointCone {
 }
 
 impl Contract for JointCone {
+    fn limit(&self) -> Option<&dyn Limit> {
+        Some(self)
+    }
+
     fn has(&self, port: &Port) -> bool {
         (port.name == "orientation") == matches!(self.of, Swinging::Orientation)
     }
@@ -281,7 +331,7 @@ mod tests {
                 let off = product.at(i / 3, i % 3) - expected.at(i / 3, i % 3);
                 assert!(off.abs() < 1e-12, "{asked:?} {off}");
             }
-            for row in limit.open_rows(&found) {
+            for row in limit.rows_at(&found) {
                 assert!(row.0 > -1e-9, "{row:?}");
             }
         }
@@ -304,6 +354,28 @@ mod tests {
     }
 
     #[test]
+    fn oblique_axes_stay_in_the_cone() {
+        // Axes as far from perpendicular as those of a thumb.
+        let axes =
+            [Vec3::new(0.1, 0.2, 1.0), Vec3::new(1.0, 0.3, 0.2), Vec3::Y].map(Vec3::normalized);
+        let limit = JointCone { of: Swinging::Angles(axes), cone: cone(0.7, Some([-0.5, 0.4])) };
+        let mut reached = 0;
+        for i in 0..200 {
+            let at = |k: f64| (f64::from(i) * k).sin() * 1.3;
+            let asked = [at(0.7), at(1.3), at(2.1)];
+            let Some(found) = limit.legal(&asked) else { continue };
+            for row in limit.rows_at(&found[..3]) {
+                assert!(row.0 > -1e-8, "{asked:?} {row:?}");
+            }
+            let wanted = limit.cone.legal(limit.turned(&asked)).rotation;
+            let off = Quat::from_mat3(limit.turned(&found[..3])).angle_to(Quat::from_mat3(wanted));
+            reached += usize::from(off < 1e-9);
+        }
+        // Most legal rotations are within reach of the three axes.
+        assert!(reached > 100, "only {reached}");
+    }
+
+    #[test]
     fn rows_change_as_their_slopes_say() {
         let axes = [Vec3::X, Vec3::Z, Vec3::Y];
         let three = Swinging::Angles(axes);
@@ -314,12 +386,12 @@ mod tests {
             let moved = |step: f64| {
                 let mut angles = at;
                 angles[k] += step;
-                limit.open_rows(&angles).map(|(value, _)| value)
+                limit.rows_at(&angles).map(|(value, _)| value)
             };
             let (ahead, behind) = (moved(h), moved(-h));
             for row in 0..3 {
                 let slope = (ahead[row] - behind[row]) / (2.0 * h);
-                let exact = limit.open_rows(&at)[row].1[k];
+                let exact = limit.rows_at(&at)[row].1[k];
                 assert!((slope - exact).abs() < 1e-7, "{row} {k}: {slope} {exact}");
             }
         }

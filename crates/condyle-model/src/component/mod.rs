@@ -15,6 +15,11 @@
 //! | [`Combine`] | scalars → scalar |
 //! | [`Depend`] | driver, passive → passive, clamped to bounds that the driver sets |
 //! | [`JointCone`] | angles of a ball joint, or its orientation → the legal ones |
+//! | [`Ellipse`] | two scalars → the legal ones |
+//! | [`HalfSpace`] | scalars → the legal ones |
+//! | [`RelativeOrientation`] | two segments → orientation |
+//! | [`RelativePosition`] | two segments → scalars: where a point of one is in the other |
+//! | [`Angles`] | orientation → three angles, or twist and swing |
 //! | [`Contact`] | pose of a bone → the two rotations that put it on an ellipsoid |
 //! | [`Rotate`] | angle → rotation about a fixed axis |
 //! | [`Pivot`] | angle → rotation about an axis whose centre moves |
@@ -34,6 +39,7 @@
 //! its compilation in `evaluate/compile/`; a smooth function of scalars only needs to implement
 //! [`MotionLaw`] for that. The compiler names every place.
 
+mod angles;
 mod ball;
 mod combine;
 mod compensate;
@@ -43,18 +49,23 @@ mod contact;
 mod curve;
 mod custom;
 mod depend;
+mod ellipse;
 mod ellipsoid;
+mod half_space;
 mod map;
 mod pivot;
 mod place;
 mod port;
 mod product;
 mod reflection;
+mod relative_orientation;
+mod relative_position;
 mod rotate;
 mod scale;
 pub(crate) mod shear;
 mod translate;
 
+pub use angles::{AngleNames, Angles};
 pub use ball::Ball;
 pub use combine::Combine;
 pub use compensate::Compensate;
@@ -71,11 +82,14 @@ pub use place::Place;
 pub use port::{Arity, Kind, Port, PortType, Signal};
 pub use product::Product;
 pub use reflection::{Mirrored, Reflection};
+pub use relative_orientation::RelativeOrientation;
+pub use relative_position::RelativePosition;
 pub use rotate::Rotate;
 pub use scale::{Along, Scale};
 pub use shear::Shear;
 pub use translate::Translate;
 
+use crate::limit::{Ellipse, HalfSpace, Limit};
 use crate::position::{JointSetId, SegmentId};
 use condyle_math::{Affine, Scalar, Vec3};
 
@@ -143,6 +157,11 @@ pub(crate) trait Contract {
         false
     }
 
+    /// The limit of all its inputs together, which its outputs keep.
+    fn limit(&self) -> Option<&dyn Limit> {
+        None
+    }
+
     /// Multiplies the lengths that it holds: by the factor of its joint, which is that of the parent of
     /// the segment that it moves, or by those of the segments at its ports, in their order.
     fn grow(&mut self, joint: f64, segments: &[f64]);
@@ -192,6 +211,16 @@ laws! {
     Depend(Depend),
     /// A ball joint limited by a cone.
     Cone(JointCone),
+    /// Two scalars limited by an ellipse.
+    Ellipse(Ellipse),
+    /// Scalars of which a sum is limited.
+    HalfSpace(HalfSpace),
+    /// The orientation of a segment in another.
+    RelativeOrientation(RelativeOrientation),
+    /// The position of a point of a segment in another.
+    RelativePosition(RelativePosition),
+    /// An orientation to three angles.
+    Angles(Angles),
     /// Contact of a segment with an ellipsoid.
     Contact(Contact),
     /// Rotation about a fixed axis.
@@ -225,8 +254,12 @@ laws! {
 impl Law {
     /// Its ports, in the order of [`Component::inputs`].
     pub fn ports(&self) -> impl Iterator<Item = &'static Port> {
-        let law = self.contract();
-        self.kind().ports.iter().filter(|port| law.has(port))
+        self.kind().ports.iter().filter(|port| self.has(port))
+    }
+
+    /// Whether it has a port that only some laws of its kind have.
+    pub(crate) fn has(&self, port: &Port) -> bool {
+        self.contract().has(port)
     }
 
     /// The port of each of so many inputs: one for a port, and for a list all that the others do not
@@ -249,6 +282,11 @@ impl Law {
     /// Whether its transform stretches or shears what it moves, by itself.
     pub(crate) fn deforms(&self) -> bool {
         self.contract().deforms()
+    }
+
+    /// The limit of all its inputs together, which its outputs keep.
+    pub fn limit(&self) -> Option<&dyn Limit> {
+        self.contract().limit()
     }
 
     /// The directions among its parameters, by their names in files.

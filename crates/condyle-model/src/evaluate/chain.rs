@@ -25,6 +25,8 @@ pub(super) trait Recorder<S> {
     fn law(&mut self, code: &Code, law: u32, before: Affine<S>);
     /// A transform computed by an earlier instruction; `before` is the frame before it.
     fn transform(&mut self, of: Frame, before: Affine<S>);
+    /// The inverse of an earlier, rigid transform; `before` is the frame before it.
+    fn inverse(&mut self, of: Frame, inverse: Affine<S>, before: Affine<S>);
     /// A power of the rotation of an earlier transform; `before` is the frame before it.
     fn power(&mut self, of: Frame, exponent: f64, rotation: Mat3<S>, before: Affine<S>);
 }
@@ -42,6 +44,8 @@ impl<S> Recorder<S> for Silent {
     fn law(&mut self, _: &Code, _: u32, _: Affine<S>) {}
     #[inline(always)]
     fn transform(&mut self, _: Frame, _: Affine<S>) {}
+    #[inline(always)]
+    fn inverse(&mut self, _: Frame, _: Affine<S>, _: Affine<S>) {}
     #[inline(always)]
     fn power(&mut self, _: Frame, _: f64, _: Mat3<S>, _: Affine<S>) {}
 }
@@ -161,6 +165,11 @@ fn rare_step<S: Scalar, R: Recorder<S>>(
                 *value = scalars[register.index()];
             }
             frame = frame * call.law.transform(&inputs[..call.inputs.len()]);
+        }
+        Step::Inverse(of) => {
+            let inverse = pose.transforms[of.index()].rigid_inverse();
+            recorder.inverse(of, inverse, frame);
+            frame = frame * inverse;
         }
         Step::Power { of, exponent } => {
             // The rotation only, about the origin of the current frame.

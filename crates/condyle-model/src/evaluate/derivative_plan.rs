@@ -10,7 +10,7 @@
 #[cfg(doc)]
 use super::instruction::Step;
 use super::instruction::{Code, Driver, Frame, Instruction, Number};
-use crate::component::Swinging;
+use crate::limit::MOST_LIMITED;
 use std::ops::Range;
 use std::slice::Iter;
 
@@ -134,7 +134,8 @@ pub(super) fn plan(
     };
     // (direction, slot) of every scalar register.
     let mut scalars: Vec<Vec<(u32, u32)>> = vec![vec![]; code.scalars];
-    // A free coordinate has the derivative 1 in its own direction: slot 0.
+    // A free coordinate has the derivative 1 in its own direction: slot 0. The first three registers of
+    // an orientation stand for its tangents.
     for &(register, direction) in directions {
         scalars[register.index()].push((direction, 0));
     }
@@ -155,30 +156,41 @@ pub(super) fn plan(
                 let inputs: Vec<_> = inputs.iter().map(|&r| scalars[r.index()].clone()).collect();
                 scalars[output.index()] = plan.scalar(0, &inputs);
             }
-            Instruction::Cone { cone } => {
-                let call = &code.cones[*cone as usize];
-                let inputs: Vec<Vec<(u32, u32)>> = match call.law.of {
-                    Swinging::Orientation => {
-                        // The register of x stands for all four numbers and their three directions.
-                        let first = scalars[call.inputs[0].index()].clone();
-                        scalars[call.outputs[0].index()] = first.clone();
-                        let along = |k| first.iter().map(|&(d, slot)| (d + k, slot)).collect();
-                        vec![along(0), along(1), along(2)]
-                    }
-                    _ => {
-                        let read = |&r: &Number| scalars[r.index()].clone();
-                        let inputs: Vec<_> = call.inputs.iter().map(read).collect();
-                        // In open mode the angles pass unchanged: their derivative, at position 0,
-                        // is 1.
-                        for (input, &output) in inputs.iter().zip(&call.outputs) {
-                            scalars[output.index()] = plan.scalar(0, std::slice::from_ref(input));
-                        }
-                        inputs
-                    }
-                };
-                // Three derivatives for each row, after that of the angles.
+            Instruction::Limit { limit } => {
+                let call = &code.limits[*limit as usize];
+                // An orientation has three tangents, in its first three registers.
+                let count = if call.orientation { 3 } else { call.inputs.len() };
+                let read = |r: &Number| scalars[r.index()].clone();
+                let inputs: Vec<_> = call.inputs[..count].iter().map(read).collect();
+                // In open mode the numbers pass unchanged: their derivative, at position 0, is 1.
+                for (input, &output) in inputs.iter().zip(&call.outputs) {
+                    scalars[output.index()] = plan.scalar(0, std::slice::from_ref(input));
+                }
+                // After it the derivatives of each row.
                 for (row, &register) in call.rows.iter().enumerate() {
-                    scalars[register.index()] = plan.scalar(1 + 3 * row, &inputs);
+                    scalars[register.index()] = plan.scalar(1 + MOST_LIMITED * row, &inputs);
+                }
+            }
+            Instruction::Orientation { frame, output } => {
+                for k in 0..3 {
+                    let register = Number(output.0 + k).index();
+                    scalars[register] = plan.measured(&transforms[frame.index()], k, 3);
+                }
+            }
+            Instruction::Position { position } => {
+                let call = &code.positions[*position as usize];
+                let n = call.outputs.len() as u32;
+                for (k, output) in (0..n).zip(&call.outputs) {
+                    let moving = &transforms[call.frame.index()];
+                    scalars[output.index()] = plan.measured(moving, k, n);
+                }
+            }
+            Instruction::Angles { angles } => {
+                let call = &code.angles[*angles as usize];
+                let tangent = |k| scalars[Number(call.input.0 + k).index()].clone();
+                let inputs = [0, 1, 2].map(tangent);
+                for (k, output) in call.outputs.iter().enumerate() {
+                    scalars[output.index()] = plan.scalar(3 * k, &inputs);
                 }
             }
             Instruction::Contact { contact } => {
@@ -189,6 +201,16 @@ pub(super) fn plan(
                     plan.units(&mut moving, Driver::Number(driver), &scalars, &transforms);
                 }
                 transforms[call.output.index()] = plan.close(moving, false, call.output);
+                if call.bounded {
+                    // The directions of the frame, then the drivers; for each gap.
+                    let own = transforms[call.frame.index()].iter().map(|&(d, _)| vec![(d, 0)]);
+                    let driven = call.drivers.iter().map(|driver| scalars[driver.index()].clone());
+                    let inputs: Vec<_> = own.chain(driven).collect();
+                    for gap in 0..2 {
+                        let register = Number(call.report.0 + 2 + gap).index();
+                        scalars[register] = plan.scalar(gap as usize * inputs.len(), &inputs);
+                    }
+                }
             }
             Instruction::BallAt { base, orientation, output, .. } => {
                 let mut moving = inherit(&transforms[base.index()]);
@@ -262,6 +284,20 @@ impl DerivativePlan {
         made
     }
 
+    /// Plans the derivatives of one of `count` scalars that are measured on a moving transform: that
+    /// along its i-th direction is at position `count`·i + `number`.
+    fn measured(&mut self, moving: &[(u32, u32)], number: u32, count: u32) -> Vec<(u32, u32)> {
+        let mut made = vec![];
+        for (i, &(direction, _)) in moving.iter().enumerate() {
+            let to = self.derivatives as u32;
+            self.derivatives += 1;
+            let slope = i as u32 * count + number;
+            self.scalar_terms.push(ScalarTerm { slope, from: 0, to, first: true });
+            made.push((direction, to));
+        }
+        made
+    }
+
     /// Plans the motions of a driver.
     fn units(
         &mut self,
@@ -272,13 +308,10 @@ impl DerivativePlan {
     ) {
         match driver {
             Driver::Number(number) => self.unit(moving, &scalars[number.index()]),
-            // The three directions of an orientation are consecutive. A constant one has no
-            // dependencies but still three motions.
+            // A constant orientation has no dependencies but still three motions.
             Driver::Orientation(first) => {
-                let own = scalars[first.index()].first().copied();
                 for axis in 0..3 {
-                    let own = own.map(|(direction, slot)| (direction + axis, slot));
-                    self.unit(moving, own.as_slice());
+                    self.unit(moving, &scalars[Number(first.0 + axis).index()]);
                 }
             }
             // Generators of the earlier transform, each already that of one direction.

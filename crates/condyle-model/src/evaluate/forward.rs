@@ -4,7 +4,8 @@ use super::chain::{Silent, run_chain};
 use super::instruction::Instruction;
 use super::pose::Pose;
 use super::program::{Mode, Program, SizeMismatch};
-use condyle_math::{Affine, Lane, Quat, Scalar};
+use crate::limit::MOST_LIMITED;
+use condyle_math::{Affine, Lane, Quat, Scalar, Vec3};
 
 /// The largest absolute value of a scalar; larger ones are clamped.
 const MOST: f64 = 1e9;
@@ -16,6 +17,16 @@ pub(super) fn finite<S: Scalar>(x: S) -> S {
     let (least, most) = (S::from_f64(-MOST), S::from_f64(MOST));
     let held = x.select_less(most, x, most);
     held.select_less(least, least, held)
+}
+
+/// Slopes along the tangents of an orientation as slopes along its four stored numbers.
+///
+/// δ = 2·vec(q*·q̇)/|q|², with q* the conjugate, so s·δ = 2·((w·s - s × v)·v̇ - (s·v)·ẇ)/|q|².
+fn stored_slopes(q: &[f64], [a, b, c, _]: [f64; 4]) -> [f64; 4] {
+    let (v, s) = (Vec3::new(q[0], q[1], q[2]), Vec3::new(a, b, c));
+    let square = q.iter().map(|x| x * x).sum::<f64>().max(1e-300);
+    let along = (s * q[3] - s.cross(v)) * (2.0 / square);
+    [along.x, along.y, along.z, -2.0 * s.dot(v) / square]
 }
 
 /// Runs consecutive ball instructions: first the local transforms of all, then the products along
@@ -64,9 +75,9 @@ impl Program {
     ) -> Result<(), SizeMismatch> {
         self.load(requested, mode, pose)?;
         for stage in &self.code.stages {
-            let scalars = &mut pose.scalars[..];
+            let (scalars, transforms) = (&mut pose.scalars[..], &pose.transforms[..]);
             for instruction in &self.code.instructions[stage.scalars.clone()] {
-                self.run_scalar(instruction, mode, scalars);
+                self.run_scalar(instruction, mode, scalars, transforms);
             }
             pose.take_turns(&self.code.turns, stage.turns.clone());
             self.run_transforms(&self.code.instructions[stage.transforms.clone()], pose);
@@ -148,6 +159,7 @@ impl Program {
         instruction: &Instruction,
         mode: Mode,
         scalars: &mut [S],
+        transforms: &[Affine<S>],
     ) {
         match *instruction {
             Instruction::Function { function, input, output } => {
@@ -174,27 +186,46 @@ impl Program {
                 }
                 scalars[output.index()] = value;
             }
-            Instruction::Cone { cone } => self.run_cone(cone, mode, scalars),
+            Instruction::Limit { limit } => self.run_limit(limit, mode, scalars),
+            Instruction::Orientation { frame, output } => {
+                let q = Quat::from_mat3(transforms[frame.index()].linear);
+                scalars[output.index()..][..4].copy_from_slice(&q.to_array());
+            }
+            Instruction::Position { position } => {
+                let call = &self.code.positions[position as usize];
+                let place = transforms[call.frame.index()] * call.point.cast();
+                for (&output, along) in call.outputs.iter().zip(&call.along) {
+                    scalars[output.index()] = finite(place.dot(along.cast()));
+                }
+            }
+            Instruction::Angles { angles } => {
+                let call = &self.code.angles[angles as usize];
+                let found = call.law.of(call.input.quaternion(scalars));
+                for (output, angle) in call.outputs.into_iter().zip(found) {
+                    scalars[output.index()] = finite(angle);
+                }
+            }
             Instruction::Contact { .. }
             | Instruction::Chain { .. }
             | Instruction::BallAt { .. } => {}
         }
     }
 
-    /// Posed mode: moves the numbers of a ball joint into its cone. Open mode: passes them, and
-    /// computes the limit rows.
-    fn run_cone<S: Scalar>(&self, cone: u32, mode: Mode, scalars: &mut [S]) {
-        let call = &self.code.cones[cone as usize];
-        let mut numbers = [S::zero(); 4];
+    /// Posed mode: moves numbers into their limit. Open mode, and for what is measured: passes them,
+    /// and computes the limit rows.
+    fn run_limit<S: Scalar>(&self, limit: u32, mode: Mode, scalars: &mut [S]) {
+        let call = &self.code.limits[limit as usize];
+        let Some(limit) = call.law.limit() else { return };
+        let mut numbers = [S::zero(); MOST_LIMITED];
         let n = call.inputs.len();
         for (number, &input) in numbers.iter_mut().zip(&call.inputs) {
             *number = scalars[input.index()];
         }
         // Which side of the boundary is nearest differs from lane to lane.
-        if mode == Mode::Posed {
+        if mode == Mode::Posed && !call.measured {
             numbers = S::lane_by_lane(numbers, |asked| {
                 // Constants: the derivative of a moved number is taken as 0.
-                let legal = call.law.legal(&asked.map(Lane::value)[..n]);
+                let legal = limit.legal(&asked.map(Lane::value)[..n]);
                 legal.map_or(asked, |legal| legal.map(Scalar::from_f64))
             });
             // The effective posture is legal: no violation remains.
@@ -202,8 +233,9 @@ impl Program {
         } else {
             let rows = S::lane_by_lane(numbers, |asked| {
                 let values = &asked.map(Lane::value)[..n];
-                call.law.open_rows(values).map(|(value, slopes)| {
-                    let slopes = call.law.stored_slopes(values, slopes);
+                limit.rows_at(values).map(|(value, slopes)| {
+                    let slopes =
+                        if call.orientation { stored_slopes(values, slopes) } else { slopes };
                     // A row is known by value and slopes: Σ x.chain(0, slope) adds the derivatives
                     // only.
                     let terms = asked[..n].iter().zip(slopes);

@@ -1,7 +1,7 @@
 //! The instructions of a program, the steps of chains, and the tables that they refer to.
 
 use crate::component::{
-    Along, ConstantCurvature, Curve, Custom, Ellipsoid, Gliding, JointCone, MotionLaw, Pivot,
+    Along, Angles, ConstantCurvature, Curve, Custom, Ellipsoid, Gliding, Law, MotionLaw, Pivot,
 };
 use crate::position::ComponentId;
 use condyle_math::function::{Function, FunctionOfSeveral};
@@ -86,7 +86,9 @@ impl Step {
                 let call = &code.laws[index as usize];
                 (numbers(&call.inputs), !call.law.is_rigid())
             }
-            Self::Transform(of) | Self::Power { of, .. } => (vec![Driver::Frame(of)], false),
+            Self::Transform(of) | Self::Inverse(of) | Self::Power { of, .. } => {
+                (vec![Driver::Frame(of)], false)
+            }
         }
     }
 }
@@ -120,6 +122,8 @@ pub(super) enum Step {
     Law(u32),
     /// An earlier transform.
     Transform(Frame),
+    /// The inverse of an earlier transform, which is rigid.
+    Inverse(Frame),
     /// A power of the rotation of an earlier transform; -1 is its inverse.
     Power { of: Frame, exponent: f64 },
 }
@@ -170,8 +174,14 @@ pub(super) enum Instruction {
     Combine { function: u32, output: Number },
     /// `output = passive`, clamped between two other scalars in posed mode.
     Hold { passive: Number, lower: Option<Number>, upper: Option<Number>, output: Number },
-    /// The numbers of a ball joint, moved into a cone in posed mode.
-    Cone { cone: u32 },
+    /// Numbers with a limit, moved into it in posed mode, and its rows.
+    Limit { limit: u32 },
+    /// Four scalars: the quaternion of an earlier transform.
+    Orientation { frame: Frame, output: Number },
+    /// Scalars: where a point of an earlier transform is along directions.
+    Position { position: u32 },
+    /// Three angles of an orientation.
+    Angles { angles: u32 },
     /// The two rotations that bring a segment into contact with an ellipsoid.
     Contact { contact: u32 },
     /// `output = base · shift · steps`.
@@ -207,10 +217,24 @@ impl Instruction {
                 registers.read.extend([Some(passive), lower, upper].into_iter().flatten());
                 registers.written.push(output);
             }
-            Self::Cone { cone } => {
-                let call = &code.cones[cone as usize];
+            Self::Limit { limit } => {
+                let call = &code.limits[limit as usize];
                 registers.read.extend(&call.inputs);
                 registers.written.extend(call.outputs.iter().chain(&call.rows));
+            }
+            Self::Orientation { frame, output } => {
+                registers.read_frames.push(frame);
+                registers.written.extend((0..4).map(|k| Number(output.0 + k)));
+            }
+            Self::Position { position } => {
+                let call = &code.positions[position as usize];
+                registers.read_frames.push(call.frame);
+                registers.written.extend(&call.outputs);
+            }
+            Self::Angles { angles } => {
+                let call = &code.angles[angles as usize];
+                registers.read.push(call.input);
+                registers.written.extend(call.outputs);
             }
             Self::Contact { contact } => {
                 let call = &code.contacts[contact as usize];
@@ -248,13 +272,35 @@ pub(super) struct CombineCall {
     pub inputs: Vec<Number>,
 }
 
-/// A cone with its registers.
+/// A limit with its registers.
 #[derive(Clone, Debug)]
-pub(super) struct ConeCall {
-    pub law: JointCone,
+pub(super) struct LimitCall {
+    pub law: Law,
+    /// Whether its numbers are an orientation.
+    pub orientation: bool,
+    /// Whether its numbers are measured between segments: they are then not moved.
+    pub measured: bool,
     pub inputs: Vec<Number>,
     pub outputs: Vec<Number>,
     pub rows: Vec<Number>,
+}
+
+/// A point of an earlier transform, measured along directions.
+#[derive(Clone, Debug)]
+pub(super) struct PositionCall {
+    pub frame: Frame,
+    pub point: Vec3,
+    pub along: Vec<Vec3>,
+    pub outputs: Vec<Number>,
+}
+
+/// Angles with their registers.
+#[derive(Clone, Debug)]
+pub(super) struct AnglesCall {
+    pub law: Angles,
+    /// The first of four.
+    pub input: Number,
+    pub outputs: [Number; 3],
 }
 
 /// A contact with its registers.
@@ -269,6 +315,8 @@ pub(super) struct ContactCall {
     pub output: Frame,
     /// The first of four scalars: two angles, two gaps.
     pub report: Number,
+    /// Whether the gaps are bounded, so that their derivatives are needed.
+    pub bounded: bool,
 }
 
 /// Instructions that run together: first those that compute scalars, then the sines and cosines of
@@ -302,7 +350,9 @@ pub(super) struct Code {
     pub shears: Vec<[Vec3; 2]>,
     /// The limit rows: not negative in a legal posture.
     pub rows: Vec<Number>,
-    pub cones: Vec<ConeCall>,
+    pub limits: Vec<LimitCall>,
+    pub positions: Vec<PositionCall>,
+    pub angles: Vec<AnglesCall>,
     pub contacts: Vec<ContactCall>,
     /// The model's root frame, the parent of the root segments.
     pub base: Frame,

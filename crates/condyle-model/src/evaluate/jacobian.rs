@@ -8,8 +8,9 @@ use super::instruction::Instruction;
 use super::pose::Pose;
 use super::program::{Mode, Program, SizeMismatch};
 use super::tape::Tape;
+use crate::limit::MOST_LIMITED;
 use crate::model::SegmentId;
-use condyle_math::{Affine, Mat3, Quat, Twist, Vec3};
+use condyle_math::{Affine, Dual, Mat3, Quat, Scalar, Twist, Vec3};
 
 /// The generators of one evaluation, expressed in the world.
 ///
@@ -84,6 +85,14 @@ impl Jacobian {
     }
 }
 
+/// Adds a term of the derivative of a scalar.
+#[inline(always)]
+fn add(derivatives: &mut [f64], term: &ScalarTerm, slope: f64) {
+    let addend = slope * derivatives[term.from as usize];
+    let to = &mut derivatives[term.to as usize];
+    *to = if term.first { addend } else { *to + addend };
+}
+
 impl Program {
     /// [`Program::evaluate`] in open mode, which also computes the generators of all segments.
     ///
@@ -104,7 +113,7 @@ impl Program {
             for (number, instruction) in
                 stage.scalars.clone().zip(&instructions[stage.scalars.clone()])
             {
-                self.differentiate_scalar(number, instruction, pose, &mut jacobian.derivatives);
+                self.differentiate_scalar(number, instruction, pose, jacobian);
             }
             pose.take_turns(&self.code.turns, stage.turns.clone());
             for (number, instruction) in
@@ -160,9 +169,25 @@ impl Program {
             Instruction::Contact { contact } => {
                 let call = &self.code.contacts[contact as usize];
                 let frame = pose.transforms[call.frame.index()];
-                let (turns, report) = tape.contact(call, frame);
+                let (turns, report, slopes) = tape.contact(call, frame);
                 pose.scalars[call.report.index()..][..4].copy_from_slice(&report);
                 pose.transforms[call.output.index()] = turns;
+                let entries = plan.frame_entries(call.frame);
+                let each = entries.len() + call.drivers.len();
+                for term in plan.scalar_terms(number) {
+                    let (gap, k) = (term.slope as usize / each, term.slope as usize % each);
+                    let slopes = slopes[gap];
+                    let slope = match entries.get(k) {
+                        Some(&(_, twist)) => {
+                            let Twist { angular, linear } = jacobian.twists[twist as usize];
+                            let along = Vec3::new(slopes[0], slopes[1], slopes[2]);
+                            along.dot(angular)
+                                + Vec3::new(slopes[3], slopes[4], slopes[5]).dot(linear)
+                        }
+                        None => slopes[6 + k - entries.len()],
+                    };
+                    add(&mut jacobian.derivatives, term, slope);
+                }
             }
             _ => {}
         }
@@ -175,14 +200,11 @@ impl Program {
         number: usize,
         instruction: &Instruction,
         pose: &mut Pose,
-        derivatives: &mut [f64],
+        jacobian: &mut Jacobian,
     ) {
+        let (derivatives, twists) = (&mut jacobian.derivatives[..], &jacobian.twists[..]);
         let terms = self.plan.scalar_terms(number);
-        let mut add = |term: &ScalarTerm, slope: f64| {
-            let addend = slope * derivatives[term.from as usize];
-            let to = &mut derivatives[term.to as usize];
-            *to = if term.first { addend } else { *to + addend };
-        };
+        let mut add = |term: &ScalarTerm, slope: f64| add(derivatives, term, slope);
         match *instruction {
             Instruction::Function { function, input, output } => {
                 let x = pose.scalars[input.index()];
@@ -202,28 +224,66 @@ impl Program {
                 pose.scalars[output.index()] = pose.scalars[passive.index()];
                 terms.iter().for_each(|term| add(term, 1.0));
             }
-            Instruction::Cone { cone } => {
-                let call = &self.code.cones[cone as usize];
-                let mut numbers = [0.0; 4];
+            Instruction::Limit { limit } => {
+                let call = &self.code.limits[limit as usize];
+                let Some(limit) = call.law.limit() else { return };
+                let mut numbers = [0.0; MOST_LIMITED];
                 for (i, &input) in call.inputs.iter().enumerate() {
                     numbers[i] = pose.scalars[input.index()];
                 }
                 for (&output, value) in call.outputs.iter().zip(numbers) {
                     pose.scalars[output.index()] = value;
                 }
-                let rows = call.law.open_rows(&numbers[..call.inputs.len()]);
+                let rows = limit.rows_at(&numbers[..call.inputs.len()]);
                 for (&register, (value, _)) in call.rows.iter().zip(&rows) {
                     pose.scalars[register.index()] = *value;
                 }
-                // Position 0 is that of the angles, 1 + 3·row + k that of a row along angle k.
+                // Position 0 is that of the numbers, the others those of the rows along each of them.
                 for term in terms {
-                    add(
-                        term,
-                        match (term.slope as usize).checked_sub(1) {
-                            None => 1.0,
-                            Some(k) => rows[k / 3].1[k % 3],
-                        },
-                    );
+                    let slope = (term.slope as usize).checked_sub(1);
+                    add(term, slope.map_or(1.0, |k| rows[k / MOST_LIMITED].1[k % MOST_LIMITED]));
+                }
+            }
+            Instruction::Orientation { frame, output } => {
+                let turned = pose.transforms[frame.index()].linear;
+                let q = Quat::from_mat3(turned).to_array();
+                pose.scalars[output.index()..][..4].copy_from_slice(&q);
+                // Position 3·i + k is the tangent k along the i-th direction of the frame: δ = Rᵀ·ω.
+                let entries = self.plan.frame_entries(frame);
+                for term in terms {
+                    let (i, k) = (term.slope as usize / 3, term.slope as usize % 3);
+                    let spin = twists[entries[i].1 as usize].angular;
+                    add(term, [turned.x, turned.y, turned.z][k].dot(spin));
+                }
+            }
+            Instruction::Position { position } => {
+                let call = &self.code.positions[position as usize];
+                let place = pose.transforms[call.frame.index()] * call.point;
+                for (&output, along) in call.outputs.iter().zip(&call.along) {
+                    pose.scalars[output.index()] = finite(place.dot(*along));
+                }
+                // Position n·i + k is the output k of n along the i-th direction of the frame.
+                let (entries, n) = (self.plan.frame_entries(call.frame), call.along.len());
+                for term in terms {
+                    let (i, k) = (term.slope as usize / n, term.slope as usize % n);
+                    let velocity = twists[entries[i].1 as usize].velocity_at(place);
+                    add(term, call.along[k].dot(velocity));
+                }
+            }
+            Instruction::Angles { angles } => {
+                let call = &self.code.angles[angles as usize];
+                let q: [f64; 4] = call.input.quaternion(&pose.scalars);
+                // q·exp(δ) is q·(δ/2, 1) to first order.
+                let half = |i| Dual::<3>::variable(0.0, i).scale(0.5);
+                let step = Quat { x: half(0), y: half(1), z: half(2), w: Dual::constant(1.0) };
+                let found = call.law.of((Quat::from(q).cast() * step).to_array());
+                for (output, angle) in call.outputs.into_iter().zip(found) {
+                    pose.scalars[output.index()] = finite(angle.value);
+                }
+                // Position 3·output + k is its slope along the tangent k.
+                for term in terms {
+                    let (output, k) = (term.slope as usize / 3, term.slope as usize % 3);
+                    add(term, found[output].partials[k]);
                 }
             }
             Instruction::Contact { .. }

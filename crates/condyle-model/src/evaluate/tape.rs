@@ -77,12 +77,16 @@ impl Tape<'_> {
 type ContactDual = Dual<8>;
 
 impl Tape<'_> {
-    /// Evaluates a contact with its derivatives: the transform of its rotations, and their two
-    /// angles and two gaps.
+    /// Evaluates a contact with its derivatives: the transform of its rotations, their two angles and
+    /// two gaps, and the slopes of the gaps along the six motions of the frame and the two drivers.
     ///
     /// The derivatives along the six rigid motions of the segment's frame are computed once; that
     /// of a direction is their linear combination with the frame's twist as coefficients.
-    pub(super) fn contact(&mut self, call: &ContactCall, frame: Affine) -> (Affine, [f64; 4]) {
+    pub(super) fn contact(
+        &mut self,
+        call: &ContactCall,
+        frame: Affine,
+    ) -> (Affine, [f64; 4], [[f64; 8]; 2]) {
         let number = |value: f64, partials: [f64; 6]| {
             let mut all = [0.0; 8];
             all[..6].copy_from_slice(&partials);
@@ -135,7 +139,7 @@ impl Tape<'_> {
         }
         let [a, b] = glide.angles.map(|d| d.value);
         let [c, d] = glide.gaps.map(|d| d.value);
-        (turns, [a, b, c, d])
+        (turns, [a, b, c, d], glide.gaps.map(|gap| gap.partials))
     }
 }
 
@@ -180,6 +184,14 @@ impl Recorder<f64> for Tape<'_> {
             } else {
                 self.emit(|| Twist::from_derivative(value, derivative).transformed(before));
             }
+        }
+    }
+
+    fn inverse(&mut self, of: Frame, inverse: Affine, before: Affine) {
+        // d(T⁻¹)/dt·T = -T⁻¹·V·T for the twist V of T.
+        for &(_, twist) in self.plan.frame_entries(of) {
+            let inner = self.twists[twist as usize].transformed(inverse) * -1.0;
+            self.motion(before, || inner, || inner.transformed(before));
         }
     }
 

@@ -1,14 +1,56 @@
 //! Joint limits.
 //!
-//! For given coordinates a limit computes their distance from the boundary (negative outside) and
-//! the nearest legal coordinates. In posed mode the nearest legal coordinates are used. In open
-//! mode the coordinates pass unchanged, and the distances are inequality rows g(q) ≥ 0 for a
-//! solver.
+//! A [`Limit`] bounds a few numbers x: coordinates, other scalars of a network, or an orientation. It
+//! gives
 //!
-//! A [`Range`] limits one coordinate; a [`Cone`] limits swing and twist of a ball joint together.
+//! ```text
+//! rows g(x) with slopes ∂g/∂x    legal: all g ≥ 0; radians or metres, a signed distance where it can be
+//! the nearest legal numbers      x itself where it is legal
+//! a margin                       how far x is from where the nearest legal numbers jump
+//! ```
+//!
+//! In posed mode the nearest legal numbers of a limit on scalars are used. In open mode the numbers pass
+//! unchanged, and the rows are inequalities for a solver. A limit on what is measured between segments
+//! gives its rows in both modes and moves nothing: it can act on joints through which it is measured.
+//!
+//! A [`Range`] limits one coordinate, a [`Cone`] swing and twist of a ball joint together, an [`Ellipse`]
+//! two numbers, and a [`HalfSpace`] a sum of several.
 
 mod cone;
+mod ellipse;
+mod half_space;
 mod range;
 
 pub use cone::{Cone, ConeError, ConePoint, Legal, Projected, Projection};
+pub use ellipse::Ellipse;
+pub use half_space::HalfSpace;
 pub use range::Range;
+
+/// The most numbers that one limit bounds together.
+pub const MOST_LIMITED: usize = 4;
+
+/// The most rows of one limit.
+pub const MOST_ROWS: usize = 3;
+
+/// A row of a limit: its value, not negative where the numbers are legal, and its slopes along each of
+/// them; of an orientation along its three tangents q ⊕ δ = q·exp(δ).
+pub type Row = (f64, [f64; MOST_LIMITED]);
+
+/// What every limit gives.
+pub trait Limit: std::fmt::Debug + Send + Sync {
+    /// The number of rows, at most [`MOST_ROWS`].
+    fn rows(&self) -> usize;
+
+    /// The rows at these numbers, an orientation as x, y, z, w; the first [`Limit::rows`] count.
+    fn rows_at(&self, numbers: &[f64]) -> [Row; MOST_ROWS];
+
+    /// The nearest legal numbers; `None` if the given ones are legal.
+    fn legal(&self, numbers: &[f64]) -> Option<[f64; MOST_LIMITED]>;
+
+    /// A measure of the distance of these numbers to the nearest ones where [`Limit::legal`] is
+    /// discontinuous; infinite if they are legal or there is no such place.
+    fn margin(&self, numbers: &[f64]) -> f64;
+}
+
+/// A row that does not exist.
+pub(crate) const NO_ROW: Row = (f64::INFINITY, [0.0; MOST_LIMITED]);

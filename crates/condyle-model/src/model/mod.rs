@@ -265,7 +265,7 @@ impl Model {
     /// The segments whose motions move the places at a component's ports against each other, those
     /// of each place from the root outwards.
     pub(crate) fn between(&self, component: &Component) -> Vec<SegmentId> {
-        let paths: Vec<Vec<SegmentId>> = component
+        let mut paths: Vec<Vec<SegmentId>> = component
             .ports()
             .filter_map(|(port, signal)| {
                 let id = signal.segment()?;
@@ -274,6 +274,11 @@ impl Model {
                 Some(self.path_to(end))
             })
             .collect();
+        // A segment that may be given and is not is the world.
+        let mut ports = component.law.kind().ports.iter();
+        if ports.any(|port| port.takes == PortType::Segment && !component.law.has(port)) {
+            paths.push(vec![]);
+        }
         let Some((first, others)) = paths.split_first() else { return vec![] };
         let shared =
             |path: &Vec<SegmentId>| first.iter().zip(path).take_while(|(a, b)| a == b).count();

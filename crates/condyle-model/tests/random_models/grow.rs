@@ -7,11 +7,12 @@ use condyle_math::function::{
 };
 use condyle_math::{Affine, EulerOrder, Mat3, Quat, Scalar, Vec3};
 use condyle_model::component::{
-    Along, Ball, Centre, ConstantCurvature, Contact, ContactPair, Curve as Track, Depend,
-    Ellipsoid, Gliding, Heading, JointCone, Law, MotionLaw, Pivot, Registry, Scale, Shear,
-    SurfaceAxis, Swinging,
+    Along, AngleNames, Angles, Ball, Centre, ConstantCurvature, Contact, ContactPair,
+    Curve as Track, Depend, Ellipsoid, Gliding, Heading, JointCone, Law, MotionLaw, Pivot,
+    Reflection, Registry, RelativeOrientation, RelativePosition, Scale, Shear, SurfaceAxis,
+    Swinging,
 };
-use condyle_model::limit::{Cone, ConePoint, Projection};
+use condyle_model::limit::{Cone, ConePoint, Ellipse, HalfSpace, Projection};
 use condyle_model::model::{Closure, Condition};
 use condyle_model::{
     CoordinateId, CoordinateKind, JointSetId, Model, ModelBuilder, PostureTerm, Range, SegmentId,
@@ -139,7 +140,18 @@ fn random_model_with(
         if scalars.is_empty() {
             continue;
         }
+        // What is measured between segments that are there already makes no circle.
+        let mut rigid: Vec<SegmentId> = vec![];
+        for (&id, parent) in segments.iter().zip(&parents).take(i) {
+            if !bent_segments.contains(&id) && parent.is_none_or(|p| rigid.contains(&p)) {
+                rigid.push(id);
+            }
+        }
         for c in 0..1 + dice.below(5) {
+            if !rigid.is_empty() && dice.below(4) == 0 {
+                grow_measure(&mut b, &mut dice, set, c, &rigid, &mut scalars);
+                continue;
+            }
             grow_component(&mut b, &mut dice, set, c, &mut scalars, &mut transforms, &mut bent);
         }
         // Cancel the rotation of the parent, or of all ancestors, before its own rotation.
@@ -153,9 +165,10 @@ fn random_model_with(
                 let before = b.rotate(set, "before", scalars[0], Vec3::Z);
                 let drivers: Vec<Signal> = scalars.iter().copied().take(dice.below(3)).collect();
                 let law = grow_gliding(&mut dice);
+                let most_gap = (dice.below(2) == 0).then_some(0.05);
                 let ends = [segment.into(), surface.into(), before];
                 let inputs = ends.into_iter().chain(drivers).collect();
-                let contact = Law::Contact(Contact { before: true, law });
+                let contact = Law::Contact(Contact { before: true, most_gap, law });
                 let glide = b.component(set, "glide", contact, inputs);
                 let motion = b.product(set, "gliding", vec![before, glide]);
                 b.output(set, segment, motion);
@@ -308,7 +321,7 @@ fn grow_component(
 ) {
     let name = format!("component_{number}");
     let any = |dice: &mut Dice| scalars[dice.below(scalars.len())];
-    match dice.below(16) {
+    match dice.below(18) {
         11 => {
             let factor = grow_factor(b, dice, set, &name);
             let along = match dice.below(3) {
@@ -345,6 +358,24 @@ fn grow_component(
             bent.extend(transforms.last());
         }
         15 => grow_cone(b, dice, set, &name, scalars, transforms),
+        16 => {
+            let half_axes = [0.9 + dice.within(0.5), 0.8 + dice.within(0.4)];
+            let centre = [dice.within(0.2), dice.within(0.2)];
+            let ellipse = Law::Ellipse(Ellipse::new(centre, half_axes, dice.within(2.0)).unwrap());
+            let inputs = vec![any(dice), any(dice)];
+            let limit = b.component(set, &name, ellipse, inputs);
+            let Signal::Output(id, _) = limit else { return };
+            scalars.extend((0..2).map(|k| Signal::Output(id, k)));
+        }
+        17 => {
+            let count = 1 + dice.below(4);
+            let normal = (0..count).map(|_| 0.5 + dice.within(1.5)).collect();
+            let half_space = HalfSpace::new(normal, 1.0 + dice.within(0.8)).unwrap();
+            let inputs = (0..count).map(|_| any(dice)).collect();
+            let limit = b.component(set, &name, Law::HalfSpace(half_space), inputs);
+            let Signal::Output(id, _) = limit else { return };
+            scalars.extend((0..count as u32).map(|k| Signal::Output(id, k)));
+        }
         9 => {
             let (passive, driver) = (any(dice), any(dice));
             let (lower, upper) = (dice.function(), dice.function());
@@ -419,6 +450,54 @@ fn grow_component(
         }
         _ => {}
     }
+}
+
+/// Angles, coordinates of a point, and limits of what is between two segments, or a segment and the world.
+fn grow_measure(
+    b: &mut ModelBuilder,
+    dice: &mut Dice,
+    set: JointSetId,
+    number: usize,
+    rigid: &[SegmentId],
+    scalars: &mut Vec<Signal>,
+) {
+    let name = format!("measure_{number}");
+    let segment = rigid[dice.below(rigid.len())];
+    let reference = rigid.get(dice.below(rigid.len() + 1)).copied();
+    let ends = |reference: Option<SegmentId>| {
+        [segment].into_iter().chain(reference).map(Signal::Segment).collect()
+    };
+    let mut outputs = |signal: Signal, count: u32| {
+        let Signal::Output(id, _) = signal else { return };
+        scalars.extend((0..count).map(|k| Signal::Output(id, k)));
+    };
+    if dice.below(3) == 0 {
+        let along = vec![dice.axis(), dice.vector(1.0) + Vec3::new(0.0, 2.0, 0.0)];
+        let law =
+            RelativePosition { reference: reference.is_some(), point: dice.vector(0.3), along };
+        let place = b.component(set, &name, Law::RelativePosition(law), ends(reference));
+        outputs(place, 2);
+        let reaches = HalfSpace::new(vec![1.0], 0.3 + dice.within(0.3)).unwrap();
+        b.component(set, &format!("{name}_side"), Law::HalfSpace(reaches), vec![place]);
+        return;
+    }
+    let law = RelativeOrientation { reference: reference.is_some() };
+    let turned = b.component(set, &name, Law::RelativeOrientation(law), ends(reference));
+    if dice.below(2) == 0 {
+        let rest = dice.vector(1.0) + Vec3::new(0.0, 2.0, 0.0);
+        let cone = grow_boundary(dice, rest.normalized());
+        let limit = Law::Cone(JointCone { of: Swinging::Orientation, cone });
+        b.component(set, &format!("{name}_cone"), limit, vec![turned]);
+        return;
+    }
+    let names = match dice.below(4) {
+        0 => AngleNames::SwingTwist(dice.below(3)),
+        _ => AngleNames::Euler(EulerOrder::ALL[dice.below(12)]),
+    };
+    let mirrored = Reflection::new(dice.below(4));
+    let angles = Law::Angles(Angles { names, mirrored });
+    let angles = b.component(set, &format!("{name}_angles"), angles, vec![turned]);
+    outputs(angles, 3);
 }
 
 /// A user's law that rotates, lifts and, with its second input, scales.

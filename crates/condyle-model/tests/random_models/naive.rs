@@ -3,8 +3,8 @@
 use super::scan;
 use condyle_math::{Affine, EulerOrder, Mat3, Quat, Vec3};
 use condyle_model::component::{
-    Along, Centre, Component, ContactPair, Gliding, JointCone, Law, MotionLaw, SurfaceAxis,
-    Swinging,
+    Along, AngleNames, Centre, Component, ContactPair, Gliding, JointCone, Law, MotionLaw,
+    SurfaceAxis, Swinging,
 };
 use condyle_model::model::ComponentId;
 use condyle_model::{CoordinateId, Mode, Model, SegmentId, Signal};
@@ -25,9 +25,31 @@ pub(crate) struct Evaluator<'a> {
 fn held(model: &Model, limit: ComponentId) -> Vec<Signal> {
     let component = &model.components()[limit.index()];
     match component.law {
+        _ if measured(model, limit) => vec![],
         Law::Depend(_) => component.at("passive").to_vec(),
-        Law::Cone(_) => component.inputs.clone(),
+        Law::Cone(_) | Law::Ellipse(_) | Law::HalfSpace(_) => component.inputs.clone(),
         _ => vec![],
+    }
+}
+
+/// Whether a component depends on what is measured between segments: no limit moves it.
+fn measured(model: &Model, id: ComponentId) -> bool {
+    let component = &model.components()[id.index()];
+    let reads = |source: Signal| match source {
+        Signal::Output(id, _) => measured(model, id),
+        Signal::Coordinate(id) => match model.coordinate(id).follows {
+            Some(Signal::Output(id, _)) => measured(model, id),
+            Some(Signal::Coordinate(id)) => {
+                let follows = model.coordinate(id).follows;
+                matches!(follows, Some(Signal::Output(id, _)) if measured(model, id))
+            }
+            _ => false,
+        },
+        Signal::Segment(_) => true,
+    };
+    match component.law {
+        Law::Compensate(_) | Law::Contact(_) => component.values().any(reads),
+        _ => component.inputs.iter().copied().any(reads),
     }
 }
 
@@ -36,8 +58,15 @@ impl<'a> Evaluator<'a> {
         // What segments and followers read, directly or not.
         let mut needed = HashSet::new();
         let followed = model.coordinates().iter().filter_map(|c| c.follows);
-        let mut open: Vec<Signal> =
-            model.segments().iter().filter_map(|s| s.motion).chain(followed).collect();
+        // A limit on what is measured moves nothing, and bounds without being read.
+        let limits = model.component_ids().filter(|&id| {
+            let law = &model.components()[id.index()].law;
+            let bounds = law.limit().is_some() || matches!(law, Law::Depend(_));
+            bounds && measured(model, id)
+        });
+        let limits = limits.map(|id| Signal::Output(id, 0));
+        let moved = model.segments().iter().filter_map(|s| s.motion);
+        let mut open: Vec<Signal> = moved.chain(followed).chain(limits).collect();
         while let Some(source) = open.pop() {
             if let Signal::Output(id, _) = source
                 && needed.insert(id)
@@ -96,6 +125,15 @@ impl<'a> Evaluator<'a> {
         }
     }
 
+    /// A segment in another, or in the world.
+    fn relative(&self, component: &Component) -> Affine {
+        let place = |port| component.segments_at(port).next().map(|id| self.segment(id));
+        let segment = place("segment").expect("a segment");
+        let reference = place("reference").unwrap_or(Affine::IDENTITY);
+        let back = reference.linear.inverse();
+        Affine::new(back, -(back * reference.translation)) * segment
+    }
+
     /// The numbers of a scalar or an orientation.
     fn numbers(&self, source: Signal) -> Vec<f64> {
         match source {
@@ -104,7 +142,15 @@ impl<'a> Evaluator<'a> {
             Signal::Output(id, output) => {
                 let component = &self.model.components()[id.index()];
                 match &component.law {
-                    Law::Cone(cone) => self.cone(cone, &component.inputs, output),
+                    Law::Cone(cone) if !measured(self.model, id) => {
+                        self.cone(cone, &component.inputs, output)
+                    }
+                    Law::Cone(JointCone { of: Swinging::Orientation, .. }) => {
+                        self.numbers(component.inputs[0])
+                    }
+                    Law::RelativeOrientation(_) => {
+                        Quat::from_mat3(self.relative(component).linear).to_array().to_vec()
+                    }
                     _ => vec![self.scalar(source)],
                 }
             }
@@ -192,7 +238,7 @@ impl<'a> Evaluator<'a> {
             Law::Depend(depend) => {
                 let (mut x, d) = (input(0), input(1));
                 let bound = |f: &condyle_math::function::Function| f.value_and_slope(d).0;
-                if self.mode == Mode::Posed {
+                if self.mode == Mode::Posed && !measured(self.model, id) {
                     x = depend.lower.as_ref().map_or(x, |f| x.max(bound(f)));
                     x = depend.upper.as_ref().map_or(x, |f| x.min(bound(f)));
                 }
@@ -202,7 +248,79 @@ impl<'a> Evaluator<'a> {
                 let x: Vec<f64> = component.inputs.iter().map(|&s| self.scalar(s)).collect();
                 combine.function.apply(&x)
             }
+            Law::Cone(_) | Law::Ellipse(_) | Law::HalfSpace(_)
+                if self.mode == Mode::Open || measured(self.model, id) =>
+            {
+                input(output as usize)
+            }
             Law::Cone(cone) => self.cone(cone, &component.inputs, output)[0],
+            Law::HalfSpace(c) => {
+                let x: Vec<f64> = (0..component.inputs.len()).map(input).collect();
+                let sum: f64 = c.normal().iter().zip(&x).map(|(n, x)| n * x).sum();
+                let square: f64 = c.normal().iter().map(|n| n * n).sum();
+                let k = output as usize;
+                x[k] - (sum - c.bound()).max(0.0) * c.normal()[k] / square
+            }
+            Law::Ellipse(c) => {
+                let asked = [input(0), input(1)];
+                let [a, b] = c.half_axes();
+                let point = |t: f64| {
+                    let (u, v) = (a * t.cos(), b * t.sin());
+                    let (s, k) = c.tilt().sin_cos();
+                    [c.centre()[0] + k * u - s * v, c.centre()[1] + s * u + k * v]
+                };
+                let (s, k) = c.tilt().sin_cos();
+                let off = [0, 1].map(|i: usize| asked[i] - c.centre()[i]);
+                let own = [k * off[0] + s * off[1], k * off[1] - s * off[0]];
+                if (own[0] / a).hypot(own[1] / b) <= 1.0 {
+                    return asked[output as usize];
+                }
+                let far = |t: f64| (point(t)[0] - asked[0]).hypot(point(t)[1] - asked[1]);
+                // The nearest of many points, and between its neighbours where the line to it is
+                // perpendicular to the ellipse.
+                let step = TAU / 5000.0;
+                let all = (0..5000).map(|i| step * f64::from(i));
+                let near = all.min_by(|a, b| far(*a).total_cmp(&far(*b))).unwrap();
+                let slope = |t: f64| {
+                    let (u, v) = (-a * t.sin(), b * t.cos());
+                    let [x, y] = [0, 1].map(|i: usize| point(t)[i] - asked[i]);
+                    x * (k * u - s * v) + y * (s * u + k * v)
+                };
+                let (mut low, mut high) = (near - step, near + step);
+                for _ in 0..60 {
+                    let middle = 0.5 * (low + high);
+                    if slope(middle) < 0.0 { low = middle } else { high = middle }
+                }
+                let best = 0.5 * (low + high);
+                point(best)[output as usize]
+            }
+            Law::RelativePosition(c) => {
+                (self.relative(component) * c.point).dot(c.along[output as usize])
+            }
+            Law::Angles(c) => {
+                let q: [f64; 4] = self.numbers(component.inputs[0]).try_into().unwrap();
+                let mut turned = Quat::from(q).normalized().to_mat3();
+                if let Some(at) = c.mirrored {
+                    turned = at.frame(Affine::from_rotation(turned)).linear;
+                }
+                match c.names {
+                    AngleNames::Euler(order) => order.from_mat3(turned)[output as usize],
+                    AngleNames::SwingTwist(k) => {
+                        // The swing turns the axis along the shortest arc.
+                        let axis = Vec3::UNITS[k];
+                        let to = turned * axis;
+                        let about = axis.cross(to);
+                        let angle = about.norm().atan2(axis.dot(to));
+                        let swing = about * (angle / about.norm().max(1e-300));
+                        let left = Quat::exp(swing).to_mat3().transpose() * turned;
+                        let beside = Vec3::UNITS[(k + 1) % 3];
+                        let moved = left * beside;
+                        let twist = axis.dot(beside.cross(moved)).atan2(beside.dot(moved));
+                        let swing = swing.to_array();
+                        [twist, swing[(k + 1) % 3], swing[(k + 2) % 3]][output as usize]
+                    }
+                }
+            }
             other => panic!("{} is no scalar", other.kind().name),
         }
     }

@@ -52,6 +52,9 @@ use quartic::{Quartic, Turn};
 pub struct Contact {
     /// Whether there is a transform before the two rotations.
     pub before: bool,
+    /// The largest distance of the two points from the ellipsoid in metres, inside and outside: four
+    /// limit rows, two for each point. `None` bounds nothing.
+    pub most_gap: Option<f64>,
     /// Ellipsoid, axis and pairs of points.
     pub law: Gliding,
 }
@@ -83,6 +86,7 @@ impl Contract for Contact {
 
     fn grow(&mut self, _: f64, segments: &[f64]) {
         let &[own, below, ..] = segments else { return };
+        self.most_gap = self.most_gap.map(|gap| gap * below);
         // Rebuilt only where it changes, so that factor 1 keeps every bit.
         if (own, below) == (1.0, 1.0) {
             return;

@@ -65,10 +65,7 @@ impl Compiler<'_> {
         let mut steps = vec![];
         self.fixed(contact.law.ellipsoid_in_surface().rigid_inverse(), &mut steps);
         for id in self.model.between(component) {
-            let segment = self.model.segment(id);
-            self.fixed(segment.joint_in_parent, &mut steps);
-            self.shared_step(segment.motion, &mut steps);
-            self.fixed(segment.joint_in_segment.rigid_inverse(), &mut steps);
+            self.joint(id, &mut steps);
         }
         // The own motion of the gliding segment is the contact; before it comes `before`, if any.
         let gliding = component.segments_at("segment").next().map(|id| self.model.segment(id));
@@ -83,11 +80,47 @@ impl Compiler<'_> {
         let report = Number::new(self.program.code.scalars);
         self.program.code.scalars += 4;
         let law = contact.law.seen_from(joint);
-        let call = ContactCall { component: id, law, frame, drivers, output, report };
+        let bounded = contact.most_gap.is_some();
+        let call = ContactCall { component: id, law, frame, drivers, output, report, bounded };
         self.program.code.contacts.push(call);
-        let contact = self.program.code.contacts.len() as u32 - 1;
-        self.program.code.instructions.push(Instruction::Contact { contact });
+        let number = self.program.code.contacts.len() as u32 - 1;
+        self.program.code.instructions.push(Instruction::Contact { contact: number });
+        for gap in [2, 3].map(|k| Number(report.0 + k)) {
+            for (most, sign) in contact.most_gap.into_iter().flat_map(|m| [(m, -1.0), (-m, 1.0)]) {
+                let bound = self.register(Operand::Constant(most));
+                self.row(gap, bound, sign);
+            }
+        }
         output
+    }
+
+    /// The transform of the segment at the port `segment` in the one at `reference`, or in the world,
+    /// through all joints between them.
+    pub(super) fn relative(&mut self, component: &Component) -> Frame {
+        let end = |port: &str| self.model.path_to(component.segments_at(port).next());
+        let (to, from) = (end("segment"), end("reference"));
+        let common = to.iter().zip(&from).take_while(|(a, b)| a == b).count();
+        let mut steps = vec![];
+        if from.len() > common {
+            let mut up = vec![];
+            from[common..].iter().for_each(|&id| self.joint(id, &mut up));
+            let reference = self.new_transform();
+            self.chain(self.program.code.identity, up, reference);
+            steps.push(Step::Inverse(reference));
+        }
+        to[common..].iter().for_each(|&id| self.joint(id, &mut steps));
+        let frame = self.new_transform();
+        self.chain(self.program.code.identity, steps, frame);
+        frame
+    }
+
+    /// Appends the transform of a segment in its parent, whose motion has a register since this reads
+    /// it, too.
+    fn joint(&mut self, id: SegmentId, steps: &mut Vec<Step>) {
+        let segment = self.model.segment(id);
+        self.fixed(segment.joint_in_parent, steps);
+        self.shared_step(segment.motion, steps);
+        self.fixed(segment.joint_in_segment.rigid_inverse(), steps);
     }
 
     /// Appends a transform that several components read, by its register.
@@ -210,7 +243,15 @@ impl Compiler<'_> {
                     let turns = self.contacts[id.index()].map(Step::Transform);
                     steps.extend(turns);
                 }
-                Law::Map(_) | Law::Combine(_) | Law::Depend(_) | Law::Cone(_) => {}
+                Law::Map(_)
+                | Law::Combine(_)
+                | Law::Depend(_)
+                | Law::Cone(_)
+                | Law::Ellipse(_)
+                | Law::HalfSpace(_)
+                | Law::RelativeOrientation(_)
+                | Law::RelativePosition(_)
+                | Law::Angles(_) => {}
             }
         }
     }

@@ -35,6 +35,8 @@ struct Compiler<'m> {
     /// The number of readers of each component.
     readers: Vec<usize>,
     needed: Vec<bool>,
+    /// Which components depend on what is measured between segments.
+    measured: Vec<bool>,
     /// The outputs of limit components that are the effective value of a coordinate.
     effective: HashMap<Signal, CoordinateId>,
 }
@@ -118,7 +120,9 @@ fn compile(model: &Model, wanted: &[bool], moving: &[bool]) -> Program {
                 scales: vec![],
                 shears: vec![],
                 rows: vec![],
-                cones: vec![],
+                limits: vec![],
+                positions: vec![],
+                angles: vec![],
                 contacts: vec![],
                 base: Frame::new(model.segments.len()),
                 identity: Frame::new(model.segments.len() + 1),
@@ -135,6 +139,7 @@ fn compile(model: &Model, wanted: &[bool], moving: &[bool]) -> Program {
         contacts: vec![None; components],
         readers: vec![0; components],
         needed: vec![false; components],
+        measured: measured(model, &order),
         effective: HashMap::new(),
     };
     compiler.mark_needed(&order, wanted);
@@ -155,13 +160,46 @@ fn compile(model: &Model, wanted: &[bool], moving: &[bool]) -> Program {
         .filter(|&id| model.coordinate(id).follows.is_none())
         .filter(|&id| moving[model.tangent_range(id).start])
         .filter_map(|id| match compiler.coordinates[id.index()] {
-            Operand::Register(register) => Some((register, model.tangent_range(id).start as u32)),
+            Operand::Register(register) => Some((register, model.tangent_range(id))),
             Operand::Constant(_) => None,
+        })
+        .flat_map(|(register, along)| {
+            along.enumerate().map(move |(k, at)| (Number(register.0 + k as u32), at as u32))
         })
         .collect();
     compiler.program.plan =
         plan(&compiler.program.code, model.stored_len(), model.tangent_len(), &directions);
     compiler.program
+}
+
+/// Whether a law bounds its inputs.
+fn is_limit(law: &Law) -> bool {
+    matches!(law, Law::Depend(_)) || law.limit().is_some()
+}
+
+/// Which components depend on what is measured between segments.
+fn measured(model: &Model, order: &[Node]) -> Vec<bool> {
+    let mut coordinates = vec![false; model.coordinates.len()];
+    let mut components = vec![false; model.components.len()];
+    for node in order {
+        let of = |source: Signal| match source {
+            Signal::Coordinate(id) => coordinates[id.index()],
+            Signal::Output(id, _) => components[id.index()],
+            Signal::Segment(_) => false,
+        };
+        match *node {
+            Node::Coordinate(id) => {
+                coordinates[id.index()] = model.coordinate(id).follows.is_some_and(of);
+            }
+            Node::Component(id) => {
+                let component = &model.components[id.index()];
+                let measures =
+                    matches!(component.law, Law::RelativeOrientation(_) | Law::RelativePosition(_));
+                components[id.index()] = measures || component.values().any(of);
+            }
+        }
+    }
+    components
 }
 
 impl Compiler<'_> {
@@ -176,8 +214,9 @@ impl Compiler<'_> {
         let (of_model, readers) = self.reached(order, all);
         self.readers = readers;
         let limits = model.component_ids().filter(|id| {
-            let law = &model.components[id.index()].law;
-            of_model[id.index()] && matches!(law, Law::Depend(_) | Law::Cone(_))
+            // A limit on what is measured moves nothing, so that nothing has to read its outputs.
+            let read = of_model[id.index()] || self.measured[id.index()];
+            read && is_limit(&model.components[id.index()].law)
         });
         let wanted = (0..wanted.len()).filter(|&segment| wanted[segment]).filter_map(motion);
         let limits = limits.map(|id| Signal::Output(id, 0));
@@ -219,14 +258,13 @@ impl Compiler<'_> {
         let mut last: HashMap<CoordinateId, (usize, ComponentId, Signal)> = HashMap::new();
         for node in order {
             let Node::Component(id) = *node else { continue };
-            if !self.needed[id.index()] {
+            let component = &self.model.components[id.index()];
+            if !self.needed[id.index()] || self.measured[id.index()] || !is_limit(&component.law) {
                 continue;
             }
-            let component = &self.model.components[id.index()];
             let held = match component.law {
                 Law::Depend(_) => component.at("passive"),
-                Law::Cone(_) => &component.inputs,
-                _ => continue,
+                _ => &component.inputs,
             };
             for (k, &source) in held.iter().enumerate() {
                 // A limit on the output of another one acts on the same coordinate, one level

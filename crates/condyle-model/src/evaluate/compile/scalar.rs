@@ -1,8 +1,11 @@
 //! Compilation of scalar components to scalar instructions.
 
-use super::super::instruction::{CombineCall, ConeCall, Instruction, Number};
+use super::super::instruction::{
+    AnglesCall, CombineCall, Instruction, LimitCall, Number, PositionCall,
+};
 use super::{Compiler, Operand};
-use crate::component::{Depend, JointCone, Law, Signal, Swinging};
+use crate::component::{Component, Depend, Law, PortType, Signal};
+use crate::limit::Limit;
 use crate::model::{ComponentId, CoordinateId, Node};
 use condyle_math::function::FunctionOfSeveral;
 
@@ -105,9 +108,34 @@ impl Compiler<'_> {
                 let result = self.depend(id, depend, component.inputs[0], component.inputs[1]);
                 self.outputs[id.index()].push(result);
             }
-            Law::Cone(cone) => {
-                let results = self.cone(id, cone, &component.inputs);
+            Law::Cone(_) | Law::Ellipse(_) | Law::HalfSpace(_) => {
+                let results = self.limit(id, component);
                 self.outputs[id.index()].extend(results);
+            }
+            Law::RelativeOrientation(_) => {
+                let frame = self.relative(component);
+                let output = self.new_orientation();
+                self.program.code.instructions.push(Instruction::Orientation { frame, output });
+                self.outputs[id.index()].push(Operand::Register(output));
+            }
+            Law::RelativePosition(law) => {
+                let frame = self.relative(component);
+                let outputs: Vec<Number> = law.along.iter().map(|_| self.new_scalar()).collect();
+                self.outputs[id.index()].extend(outputs.iter().copied().map(Operand::Register));
+                let (point, along) = (law.point, law.along.clone());
+                let code = &mut self.program.code;
+                code.positions.push(PositionCall { frame, point, along, outputs });
+                let position = code.positions.len() as u32 - 1;
+                code.instructions.push(Instruction::Position { position });
+            }
+            Law::Angles(law) => {
+                let input = self.scalar(component.inputs[0]);
+                let input = self.register(input);
+                let outputs = [(); 3].map(|()| self.new_scalar());
+                self.outputs[id.index()].extend(outputs.map(Operand::Register));
+                self.program.code.angles.push(AnglesCall { law: *law, input, outputs });
+                let angles = self.program.code.angles.len() as u32 - 1;
+                self.program.code.instructions.push(Instruction::Angles { angles });
             }
             Law::Compensate(law) => {
                 self.compensations[id.index()] = Some(self.paths(component, law.weight));
@@ -166,7 +194,8 @@ impl Compiler<'_> {
             *bound = Some(register);
         }
         let output = self.limit_output(Signal::Output(id, 0));
-        let [lower, upper] = bounds;
+        // What is measured is not moved.
+        let [lower, upper] = if self.measured[id.index()] { [None; 2] } else { bounds };
         self.program.code.instructions.push(Instruction::Hold { passive, lower, upper, output });
         Operand::Register(output)
     }
@@ -180,21 +209,26 @@ impl Compiler<'_> {
         }
     }
 
-    /// Compiles a ball joint inside a cone: its effective numbers, and its limit rows.
-    fn cone(&mut self, id: ComponentId, law: &JointCone, sources: &[Signal]) -> Vec<Operand> {
+    /// The first of four new registers.
+    fn new_orientation(&mut self) -> Number {
+        self.program.code.scalars += 4;
+        Number::new(self.program.code.scalars - 4)
+    }
+
+    /// Compiles a limit on numbers: those that are legal, and its rows.
+    fn limit(&mut self, id: ComponentId, component: &Component) -> Vec<Operand> {
         let (mut inputs, mut outputs) = (vec![], vec![]);
-        for (k, &source) in sources.iter().enumerate() {
+        let law = component.law.clone();
+        let orientation = law.outputs().0 == PortType::Orientation;
+        for (k, &source) in component.inputs.iter().enumerate() {
             let scalar = self.scalar(source);
             let first = self.register(scalar);
             let output = Signal::Output(id, k as u32);
-            if matches!(law.of, Swinging::Orientation) {
+            if orientation {
                 inputs.extend((0..4).map(|k| Number(first.0 + k)));
                 let first = match self.effective.get(&output) {
                     Some(&id) => self.own(id),
-                    None => {
-                        self.program.code.scalars += 4;
-                        Number::new(self.program.code.scalars - 4)
-                    }
+                    None => self.new_orientation(),
                 };
                 outputs.extend((0..4).map(|k| Number(first.0 + k)));
             } else {
@@ -202,13 +236,15 @@ impl Compiler<'_> {
                 outputs.push(self.limit_output(output));
             }
         }
-        let rows: Vec<Number> = (0..law.rows()).map(|_| self.new_scalar()).collect();
+        let count = law.limit().map_or(0, Limit::rows);
+        let rows: Vec<Number> = (0..count).map(|_| self.new_scalar()).collect();
         self.program.code.rows.extend(&rows);
         let results = outputs.iter().map(|&register| Operand::Register(register)).collect();
-        let call = ConeCall { law: law.clone(), inputs, outputs, rows };
-        self.program.code.cones.push(call);
-        let cone = self.program.code.cones.len() as u32 - 1;
-        self.program.code.instructions.push(Instruction::Cone { cone });
+        let measured = self.measured[id.index()];
+        let call = LimitCall { law, orientation, measured, inputs, outputs, rows };
+        self.program.code.limits.push(call);
+        let limit = self.program.code.limits.len() as u32 - 1;
+        self.program.code.instructions.push(Instruction::Limit { limit });
         results
     }
 

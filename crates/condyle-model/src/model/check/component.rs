@@ -75,10 +75,16 @@ pub(super) fn check_components(model: &Model, findings: &mut Vec<Diagnostic>) {
                 findings.push(place.error("model/arity", message, help));
             }
             Law::Cone(c) => check_cone(&place, c, component.at("angles").len(), findings),
+            Law::HalfSpace(c) => check_arity(&place, inputs, c.normal().len(), findings),
+            Law::RelativeOrientation(_) | Law::RelativePosition(_) => {
+                check_rigid(model, &place, component, &deforming, findings);
+            }
             Law::Shear(c) => check_shear(&place, c, findings),
             Law::Curve(c) => check_curve(&place, c, findings),
             Law::Map(_)
             | Law::Depend(_)
+            | Law::Ellipse(_)
+            | Law::Angles(_)
             | Law::Rotate(_)
             | Law::Pivot(_)
             | Law::Translate(_)
@@ -171,17 +177,6 @@ fn check_cone(place: &Part, cone: &JointCone, angles: usize, findings: &mut Vec<
         Swinging::Orientation => 0,
     };
     check_arity(place, angles, axes, findings);
-    let oblique = cone.obliqueness();
-    if oblique.is_nan() || oblique > 1e-6 {
-        findings.push(finding(
-            Severity::Error,
-            "model/cone-axes",
-            place.subject.clone(),
-            format!("the second axis of {place} is not perpendicular to the others"),
-            "use axes such as z, x, y: the second perpendicular to the first and to the \
-             third (with two angles: to the rest direction)",
-        ));
-    }
     if matches!(cone.of, Swinging::Directions(_)) && cone.cone.twist_at_rest().is_some() {
         findings.push(finding(
             Severity::Warning,

@@ -10,8 +10,8 @@ use crate::document::tree::{Entry, Value};
 use condyle_diagnostics::did_you_mean;
 use condyle_model::Law;
 use condyle_model::component::{
-    Arity, Ball, Combine, Compensate, Depend, Kind, Map, Pivot, Place, PortType, Product, Rotate,
-    Translate,
+    Arity, Ball, Combine, Compensate, Depend, Kind, Map, Pivot, Place, PortType, Product,
+    RelativeOrientation, Rotate, Translate,
 };
 
 /// The help where a direction is missing.
@@ -39,9 +39,17 @@ const READERS: &[LawReader] = &[
     ),
     reader(
         "contact",
-        &["at", "turn", "order", "matrix", "radii", "axis", "in", "pairs"],
+        &["at", "turn", "order", "matrix", "radii", "axis", "in", "pairs", "most_gap"],
         |r, f| r.contact(f),
     ),
+    reader("ellipse", &["centre", "half_axes", "tilt", "in"], |r, f| r.ellipse(f)),
+    reader("half_space", &["normal", "bound", "in"], |r, f| r.half_space(f)),
+    reader("relative_orientation", &[], |_, f| {
+        let reference = f.get("reference").is_some();
+        Some(Law::RelativeOrientation(RelativeOrientation { reference }))
+    }),
+    reader("relative_position", &["point", "along"], |r, f| r.relative_position(f)),
+    reader("angles", &["order", "twist", "mirrored"], |r, f| r.angles(f)),
     reader("rotate", &["axis"], |r, f| {
         Some(Law::Rotate(Rotate { axis: r.required_vector(f, "axis", DIRECTION)? }))
     }),

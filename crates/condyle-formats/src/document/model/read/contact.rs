@@ -16,6 +16,10 @@ impl ModelReader<'_> {
         let radii = self.required_vector(fields, "radii", "three half axes in metres");
         let axis = self.required_vector(fields, "axis", DIRECTION);
         let pairs = self.contact_pairs(fields);
+        let most_gap = match fields.get("most_gap") {
+            Some(node) => self.number(node, "most_gap").map(Some),
+            None => Some(None),
+        };
         // Each parameter is tried alone beside valid ones, to report errors at their places.
         let stand_in = ContactPair { first: Vec3::X, second: Vec3::Y, at: [0.0; 2] };
         let unit = Vec3::new(1.0, 1.0, 1.0);
@@ -49,7 +53,8 @@ impl ModelReader<'_> {
             self.texts.error(*spot, "model/contact", message, help);
         }
         let law = Gliding::new(pose?, radii?, axis?, pairs?.1).ok()?;
-        Some(Law::Contact(Contact { before: fields.get("before").is_some(), law }))
+        let before = fields.get("before").is_some();
+        Some(Law::Contact(Contact { before, most_gap: most_gap?, law }))
     }
 
     /// A frame without stretch or shear.

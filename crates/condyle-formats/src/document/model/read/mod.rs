@@ -6,6 +6,8 @@ mod cone;
 mod contact;
 mod coordinate;
 mod custom;
+mod limit;
+mod measured;
 mod posture;
 mod shape;
 mod size;

@@ -4,10 +4,14 @@ use super::{Writer, frame, function, key, knots, line, number, numbers, several_
 use condyle_math::Vec3;
 use condyle_math::function::SimmSpline;
 use condyle_model::component::{
-    Along, Arity, Centre, Component, Contact, Curve, Custom, JointCone, Law, SurfaceAxis, Swinging,
+    Along, AngleNames, Arity, Centre, Component, Contact, Curve, Custom, JointCone, Law,
+    SurfaceAxis, Swinging,
 };
 use condyle_model::limit::{ConePoint, Projection};
 use std::fmt::Write;
+
+/// The names of the axes.
+const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl Writer<'_> {
     pub(super) fn component(&mut self, component: &Component) {
@@ -72,6 +76,30 @@ impl Writer<'_> {
             }
             Law::Ball(_) | Law::Product(_) => {}
             Law::Cone(c) => self.cone(c),
+            Law::Ellipse(c) => {
+                line!(self, "centre = {}", numbers(&c.centre()));
+                line!(self, "half_axes = {}", numbers(&c.half_axes()));
+                line!(self, "tilt = {}", number(c.tilt()));
+            }
+            Law::HalfSpace(c) => {
+                line!(self, "normal = {}", numbers(c.normal()));
+                line!(self, "bound = {}", number(c.bound()));
+            }
+            Law::RelativeOrientation(_) => {}
+            Law::RelativePosition(c) => {
+                line!(self, "point = {}", vector(c.point));
+                let along: Vec<String> = c.along.iter().map(|&along| vector(along)).collect();
+                line!(self, "along = [{}]", along.join(", "));
+            }
+            Law::Angles(c) => {
+                match c.names {
+                    AngleNames::Euler(order) => line!(self, "order = \"{order}\""),
+                    AngleNames::SwingTwist(axis) => line!(self, "twist = \"{}\"", AXES[axis % 3]),
+                }
+                if let Some(at) = c.mirrored {
+                    line!(self, "mirrored = \"{}\"", AXES[at.axis()]);
+                }
+            }
             Law::Contact(c) => self.contact(c),
             Law::Scale(c) => {
                 if let Some(axis) = c.along.axis() {
@@ -144,6 +172,9 @@ impl Writer<'_> {
         }
         line!(self, "radii = {}", vector(contact.law.radii()));
         line!(self, "axis = {}", vector(contact.law.axis()));
+        if let Some(gap) = contact.most_gap {
+            line!(self, "most_gap = {}", number(gap));
+        }
         line!(self, "pairs = [");
         for pair in contact.law.pairs() {
             let (first, second) = (vector(pair.first), vector(pair.second));

@@ -1,0 +1,54 @@
+//! Where a point of a segment is in another: sᵢ = nᵢ·(T·p), with T the segment in the reference, p the
+//! point, and nᵢ directions of the reference.
+//!
+//! One number for each direction, such as the distance of the medial border of a scapula from the plane
+//! through the middle of the thorax: one direction, normal to the plane. Limits on it give their rows in
+//! both modes and move nothing. No kinks.
+
+use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
+use condyle_math::Vec3;
+
+/// The coordinates of a point of a `segment` along directions of a `reference` segment, or of the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RelativePosition {
+    /// Whether there is a reference segment; else it is in the world.
+    pub reference: bool,
+    /// The point, in the frame of its segment, in metres.
+    pub point: Vec3,
+    /// The directions, in the frame of the reference; they are normalised when the model is built.
+    pub along: Vec<Vec3>,
+}
+
+impl RelativePosition {
+    pub(crate) const KIND: Kind = Kind {
+        name: "relative_position",
+        ports: &[
+            Port::one("segment", PortType::Segment),
+            Port::perhaps("reference", PortType::Segment),
+        ],
+    };
+}
+
+impl Contract for RelativePosition {
+    fn has(&self, port: &Port) -> bool {
+        self.reference || port.name != "reference"
+    }
+
+    fn outputs(&self) -> (PortType, usize) {
+        (PortType::Scalar, self.along.len())
+    }
+
+    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+        self.along.iter_mut().map(|along| ("along", along)).collect()
+    }
+
+    fn grow(&mut self, _: f64, segments: &[f64]) {
+        self.point = self.point * segments.first().copied().unwrap_or(1.0);
+    }
+
+    fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
+        self.point = at.point(self.point);
+        self.along.iter_mut().for_each(|along| *along = at.point(*along));
+        Ok(Mirrored::default())
+    }
+}
