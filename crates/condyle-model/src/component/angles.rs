@@ -15,7 +15,7 @@
 //! Singular where the middle angle is at an end of its range (the third is then 0), and where the swing
 //! is a half turn: [`Angles::margin`] is the distance from there. Slopes: by dual numbers along q·exp(δ).
 
-use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
+use super::{Contract, Geometry, Kind, Mirrored, Port, PortType, Reflection};
 use condyle_math::{EulerOrder, Quat, Scalar, SwingTwist, Vec3};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -87,11 +87,9 @@ impl Contract for Angles {
         (PortType::Scalar, 3)
     }
 
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
         vec![]
     }
-
-    fn grow(&mut self, _: f64, _: &[f64]) {}
 
     fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
         self.mirrored = match self.mirrored {

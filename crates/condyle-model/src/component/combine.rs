@@ -1,7 +1,6 @@
 //! Several scalars to one: y = f(x₁, …, xₙ).
 
-use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
-use condyle_math::Vec3;
+use super::{Contract, Geometry, Kind, Port, PortType};
 use condyle_math::function::FunctionOfSeveral;
 
 /// One scalar as a function of several: for example the flexion of a vertebra from the three angles
@@ -22,13 +21,7 @@ impl Contract for Combine {
         (PortType::Scalar, 1)
     }
 
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
         vec![]
-    }
-
-    fn grow(&mut self, _: f64, _: &[f64]) {}
-
-    fn mirror(&mut self, _: Reflection) -> Result<Mirrored, String> {
-        Ok(Mirrored::default())
     }
 }

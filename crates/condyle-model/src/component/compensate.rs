@@ -17,8 +17,7 @@
 //!
 //! Discontinuous for a weight between 0 and 1, where a named motion reaches a half turn.
 
-use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
-use condyle_math::Vec3;
+use super::{Contract, Geometry, Kind, Port, PortType};
 
 /// The rotation that cancels those of named ancestors: for example an arm that keeps hanging while
 /// the shoulder shrugs.
@@ -39,17 +38,7 @@ impl Compensate {
 }
 
 impl Contract for Compensate {
-    fn outputs(&self) -> (PortType, usize) {
-        (PortType::Transform, 1)
-    }
-
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
         vec![]
-    }
-
-    fn grow(&mut self, _: f64, _: &[f64]) {}
-
-    fn mirror(&mut self, _: Reflection) -> Result<Mirrored, String> {
-        Ok(Mirrored::default())
     }
 }

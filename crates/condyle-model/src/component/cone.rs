@@ -25,7 +25,7 @@
 //! Kinks: in posed mode at the boundary. The derivative of moved angles is taken as 0; solvers use
 //! open mode.
 
-use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
+use super::{Contract, Geometry, Kind, Mirrored, Port, PortType, Reflection};
 use crate::limit::{Cone, ConePoint, Limit, MOST_ROWS, Row};
 use condyle_math::{Mat3, Quat, Scalar, Vec3};
 use std::f64::consts::TAU;
@@ -268,23 +268,17 @@ impl Contract for JointCone {
         }
     }
 
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
         let axes: &mut [Vec3] = match &mut self.of {
             Swinging::Angles(axes) => axes,
             Swinging::Directions(axes) => axes,
             Swinging::Orientation => &mut [],
         };
-        axes.iter_mut().map(|axis| ("axes", axis)).collect()
+        axes.iter_mut().map(|axis| Geometry::Turning("axes", axis)).collect()
     }
 
-    fn grow(&mut self, _: f64, _: &[f64]) {}
-
     fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
-        match &mut self.of {
-            Swinging::Angles(axes) => *axes = axes.map(|axis| at.turning(axis)),
-            Swinging::Directions(axes) => *axes = axes.map(|axis| at.turning(axis)),
-            Swinging::Orientation => {}
-        }
+        self.geometry().into_iter().for_each(|part| part.mirror(at));
         // D·R(r, τ)·D = R(D·r, -τ).
         let cone = &self.cone;
         let twist = |bounds: Option<[f64; 2]>| bounds.map(|[low, high]| [-high, -low]);

@@ -11,7 +11,7 @@
 //! For s below 0.001 or above 0.999 a straight rod p = L·t is used instead, for agreement with
 //! OpenSim. The discontinuity at s = 0.999 is that of OpenSim.
 
-use super::{Contract, Kind, Mirrored, MotionLaw, Port, PortType, Reflection};
+use super::{Contract, Geometry, Kind, Mirrored, MotionLaw, Port, PortType, Reflection};
 use condyle_math::{Affine, Mat3, Scalar, Vec3};
 use std::f64::consts::FRAC_PI_2;
 
@@ -36,16 +36,8 @@ impl ConstantCurvature {
 }
 
 impl Contract for ConstantCurvature {
-    fn outputs(&self) -> (PortType, usize) {
-        (PortType::Transform, 1)
-    }
-
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
-        vec![]
-    }
-
-    fn grow(&mut self, joint: f64, _: &[f64]) {
-        self.length *= joint;
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
+        vec![Geometry::Length(&mut self.length)]
     }
 
     fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {

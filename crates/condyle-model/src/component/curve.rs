@@ -14,7 +14,7 @@
 //! c′ = 0 or where the tangent is along `up`: there R is built on an arbitrary perpendicular
 //! direction. `condyle check` finds such curves. Generator: by dual numbers.
 
-use super::{Contract, Kind, Mirrored, MotionLaw, Port, PortType, Reflection};
+use super::{Contract, Geometry, Kind, MotionLaw, Port, PortType};
 use condyle_math::function::SimmSpline;
 use condyle_math::{Affine, Lane, Mat3, Scalar, Vec3};
 
@@ -33,27 +33,13 @@ impl Curve {
 }
 
 impl Contract for Curve {
-    fn outputs(&self) -> (PortType, usize) {
-        (PortType::Transform, 1)
-    }
-
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
-        match &mut self.heading {
-            Some(Heading { forward, up }) => vec![("forward", forward), ("up", up)],
-            None => vec![],
-        }
-    }
-
-    fn grow(&mut self, joint: f64, _: &[f64]) {
-        self.path.iter_mut().for_each(|spline| spline.stretch(joint, 1.0));
-    }
-
-    fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
-        at.path(&mut self.path);
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
+        let mut parts = vec![Geometry::Path(&mut self.path)];
         if let Some(Heading { forward, up }) = &mut self.heading {
-            (*forward, *up) = (at.point(*forward), at.point(*up));
+            parts.push(Geometry::Direction("forward", forward));
+            parts.push(Geometry::Direction("up", up));
         }
-        Ok(Mirrored::default())
+        parts
     }
 }
 

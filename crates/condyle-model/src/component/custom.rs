@@ -3,8 +3,8 @@
 //! The law is one generic function, which posing, derivatives and tracking evaluate. Files store
 //! its name and its parameters.
 
-use super::{Contract, Kind, Mirrored, MotionLaw, Port, PortType, Reflection};
-use condyle_math::{Affine, Dual, Lane, Scalar, Vec3};
+use super::{Contract, Geometry, Kind, Mirrored, MotionLaw, Port, PortType, Reflection};
+use condyle_math::{Affine, Dual, Lane, Scalar};
 use std::any::TypeId;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -70,15 +70,9 @@ impl Contract for Custom {
         !self.motion.is_rigid()
     }
 
-    fn outputs(&self) -> (PortType, usize) {
-        (PortType::Transform, 1)
-    }
-
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
         vec![]
     }
-
-    fn grow(&mut self, _: f64, _: &[f64]) {}
 
     fn mirror(&mut self, _: Reflection) -> Result<Mirrored, String> {
         Err(format!("the mirror image of law `{}` is not known: write both sides", self.law))

@@ -12,8 +12,7 @@
 //! precedence. In open mode it passes unchanged, and the bounds are limit rows x - lower(d) ≥ 0 and
 //! upper(d) - x ≥ 0 for a solver. Kinks: in posed mode, where a bound becomes active.
 
-use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
-use condyle_math::Vec3;
+use super::{Contract, Geometry, Kind, Port, PortType};
 use condyle_math::function::Function;
 
 /// A passive angle whose bounds are functions of a driver: for example the elevation of the
@@ -38,13 +37,7 @@ impl Contract for Depend {
         (PortType::Scalar, 1)
     }
 
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
         vec![]
-    }
-
-    fn grow(&mut self, _: f64, _: &[f64]) {}
-
-    fn mirror(&mut self, _: Reflection) -> Result<Mirrored, String> {
-        Ok(Mirrored::default())
     }
 }

@@ -1,9 +1,8 @@
 //! Two scalars inside an [`Ellipse`]: in posed mode the nearest ones inside, in open mode the scalars as
 //! they are and one limit row. The ports are the two scalars, the outputs those that are legal.
 
-use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
+use super::{Contract, Geometry, Kind, Port, PortType};
 use crate::limit::{Ellipse, Limit};
-use condyle_math::Vec3;
 
 impl Ellipse {
     pub(crate) const KIND: Kind = Kind {
@@ -21,13 +20,7 @@ impl Contract for Ellipse {
         Some(self)
     }
 
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
         vec![]
-    }
-
-    fn grow(&mut self, _: f64, _: &[f64]) {}
-
-    fn mirror(&mut self, _: Reflection) -> Result<Mirrored, String> {
-        Ok(Mirrored::default())
     }
 }

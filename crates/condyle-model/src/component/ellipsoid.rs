@@ -10,7 +10,7 @@
 //! the frame is not the surface normal: with half axes of 7, 15 and 7 cm the two differ by up to
 //! 21.3 degrees. No kinks. Generator: by dual numbers.
 
-use super::{Contract, Kind, Mirrored, MotionLaw, Port, PortType, Reflection};
+use super::{Contract, Geometry, Kind, Mirrored, MotionLaw, Port, PortType, Reflection};
 use condyle_math::{Affine, Mat3, Scalar, Vec3};
 use std::f64::consts::PI;
 
@@ -35,16 +35,9 @@ impl Ellipsoid {
 }
 
 impl Contract for Ellipsoid {
-    fn outputs(&self) -> (PortType, usize) {
-        (PortType::Transform, 1)
-    }
-
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
-        vec![]
-    }
-
-    fn grow(&mut self, joint: f64, _: &[f64]) {
-        self.radii = self.radii * joint;
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
+        let Vec3 { x, y, z } = &mut self.radii;
+        [x, y, z].map(Geometry::Length).into()
     }
 
     fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {

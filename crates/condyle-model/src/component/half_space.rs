@@ -1,9 +1,8 @@
 //! Scalars inside a [`HalfSpace`]: in posed mode the nearest ones inside, in open mode the scalars as they
 //! are and one limit row. The outputs are those that are legal, in the order of the inputs.
 
-use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
+use super::{Contract, Geometry, Kind, Port, PortType};
 use crate::limit::{HalfSpace, Limit};
-use condyle_math::Vec3;
 
 impl HalfSpace {
     pub(crate) const KIND: Kind =
@@ -19,13 +18,7 @@ impl Contract for HalfSpace {
         Some(self)
     }
 
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
         vec![]
-    }
-
-    fn grow(&mut self, _: f64, _: &[f64]) {}
-
-    fn mirror(&mut self, _: Reflection) -> Result<Mirrored, String> {
-        Ok(Mirrored::default())
     }
 }

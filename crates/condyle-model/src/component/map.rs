@@ -1,7 +1,6 @@
 //! One scalar to several: yᵢ = fᵢ(x) (Shao & Ng-Thow-Hing 2003, section 4.2).
 
-use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
-use condyle_math::Vec3;
+use super::{Contract, Geometry, Kind, Port, PortType};
 use condyle_math::function::Function;
 
 /// One scalar that drives several: for example a flexion angle that moves the tibia by three
@@ -22,13 +21,7 @@ impl Contract for Map {
         (PortType::Scalar, self.functions.len())
     }
 
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
         vec![]
-    }
-
-    fn grow(&mut self, _: f64, _: &[f64]) {}
-
-    fn mirror(&mut self, _: Reflection) -> Result<Mirrored, String> {
-        Ok(Mirrored::default())
     }
 }

@@ -51,6 +51,7 @@ mod custom;
 mod depend;
 mod ellipse;
 mod ellipsoid;
+mod geometry;
 mod half_space;
 mod map;
 mod pivot;
@@ -88,6 +89,8 @@ pub use rotate::Rotate;
 pub use scale::{Along, Scale};
 pub use shear::Shear;
 pub use translate::Translate;
+
+use geometry::Geometry;
 
 use crate::limit::{Ellipse, HalfSpace, Limit};
 use crate::position::{JointSetId, SegmentId};
@@ -141,16 +144,18 @@ impl Component {
 /// What every law states about itself, beside the `KIND` of its type: its name in files and messages,
 /// and its ports.
 pub(crate) trait Contract {
+    /// The parameters that change with the size of the body or on its other side.
+    fn geometry(&mut self) -> Vec<Geometry<'_>>;
+
     /// Whether it has a port that only some laws of its kind have.
     fn has(&self, _port: &Port) -> bool {
         true
     }
 
     /// The type of its outputs, and their number.
-    fn outputs(&self) -> (PortType, usize);
-
-    /// The directions among its parameters by their names in files; normalised when a model is built.
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)>;
+    fn outputs(&self) -> (PortType, usize) {
+        (PortType::Transform, 1)
+    }
 
     /// Whether its transform stretches or shears what it moves, by itself.
     fn deforms(&self) -> bool {
@@ -164,14 +169,19 @@ pub(crate) trait Contract {
 
     /// Multiplies the lengths that it holds: by the factor of its joint, which is that of the parent of
     /// the segment that it moves, or by those of the segments at its ports, in their order.
-    fn grow(&mut self, joint: f64, segments: &[f64]);
+    fn grow(&mut self, joint: f64, segments: &[f64]) {
+        self.geometry().into_iter().for_each(|part| part.grow(joint, segments));
+    }
 
     /// Makes it the law of the other side of the body. Values of coordinates are equal on both sides:
     /// the transform T becomes D·T·D with the reflection D.
     ///
     /// # Errors
     /// What to do, where the mirror image is no law of this kind.
-    fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String>;
+    fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
+        self.geometry().into_iter().for_each(|part| part.mirror(at));
+        Ok(Mirrored::default())
+    }
 }
 
 macro_rules! laws {
@@ -290,8 +300,8 @@ impl Law {
     }
 
     /// The directions among its parameters, by their names in files.
-    pub(crate) fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
-        self.contract_mut().directions()
+    pub(crate) fn directions(&mut self) -> impl Iterator<Item = (&'static str, &mut Vec3)> {
+        self.contract_mut().geometry().into_iter().filter_map(Geometry::direction)
     }
 
     /// Multiplies the lengths that it holds: by the factor of its joint, or by those of the segments at

@@ -25,7 +25,7 @@
 //! order h. Generator: the rotation (a, c × a) about the centre. Kinks: at the ends of intervals
 //! the centre, and with it the derivative, is discontinuous.
 
-use super::{Contract, Kind, Mirrored, MotionLaw, Port, PortType, Reflection};
+use super::{Contract, Geometry, Kind, Mirrored, MotionLaw, Port, PortType, Reflection};
 use condyle_math::function::SimmSpline;
 use condyle_math::{Affine, Lane, Mat3, Scalar, Vec3};
 
@@ -257,11 +257,7 @@ impl Pivot {
 }
 
 impl Contract for Pivot {
-    fn outputs(&self) -> (PortType, usize) {
-        (PortType::Transform, 1)
-    }
-
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
         vec![]
     }
 

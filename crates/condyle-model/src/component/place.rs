@@ -1,7 +1,7 @@
 //! A fixed transform: T = const.
 
-use super::{Contract, Kind, Mirrored, PortType, Reflection};
-use condyle_math::{Affine, Vec3};
+use super::{Contract, Geometry, Kind};
+use condyle_math::Affine;
 
 /// A fixed transform, such as an oblique joint axis or a shifted centre.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,21 +15,7 @@ impl Place {
 }
 
 impl Contract for Place {
-    fn outputs(&self) -> (PortType, usize) {
-        (PortType::Transform, 1)
-    }
-
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
-        vec![]
-    }
-
-    fn grow(&mut self, joint: f64, _: &[f64]) {
-        let place = &mut self.child_in_parent.translation;
-        *place = *place * joint;
-    }
-
-    fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
-        self.child_in_parent = at.frame(self.child_in_parent);
-        Ok(Mirrored::default())
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
+        vec![Geometry::Frame(&mut self.child_in_parent)]
     }
 }

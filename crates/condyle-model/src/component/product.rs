@@ -3,8 +3,7 @@
 //! The first factor is nearest to the parent. Generators: those of each factor, transformed by the
 //! product of the factors before it.
 
-use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
-use condyle_math::Vec3;
+use super::{Contract, Geometry, Kind, Port, PortType};
 
 /// A product of motions, the factor nearest to the parent first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,17 +15,7 @@ impl Product {
 }
 
 impl Contract for Product {
-    fn outputs(&self) -> (PortType, usize) {
-        (PortType::Transform, 1)
-    }
-
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
         vec![]
-    }
-
-    fn grow(&mut self, _: f64, _: &[f64]) {}
-
-    fn mirror(&mut self, _: Reflection) -> Result<Mirrored, String> {
-        Ok(Mirrored::default())
     }
 }

@@ -7,8 +7,7 @@
 //! Along a direction with the angular velocity ω of the segment in the reference, the three tangents of
 //! q ⊕ δ = q·exp(δ) change by Rᵀ·ω. No kinks; q and -q are one orientation.
 
-use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
-use condyle_math::Vec3;
+use super::{Contract, Geometry, Kind, Port, PortType};
 
 /// The orientation of a `segment` in a `reference` segment, or in the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,13 +35,7 @@ impl Contract for RelativeOrientation {
         (PortType::Orientation, 1)
     }
 
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
         vec![]
-    }
-
-    fn grow(&mut self, _: f64, _: &[f64]) {}
-
-    fn mirror(&mut self, _: Reflection) -> Result<Mirrored, String> {
-        Ok(Mirrored::default())
     }
 }

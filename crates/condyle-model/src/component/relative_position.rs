@@ -5,7 +5,7 @@
 //! through the middle of the thorax: one direction, normal to the plane. Limits on it give their rows in
 //! both modes and move nothing. No kinks.
 
-use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
+use super::{Contract, Geometry, Kind, Port, PortType};
 use condyle_math::Vec3;
 
 /// The coordinates of a point of a `segment` along directions of a `reference` segment, or of the world.
@@ -38,17 +38,8 @@ impl Contract for RelativePosition {
         (PortType::Scalar, self.along.len())
     }
 
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
-        self.along.iter_mut().map(|along| ("along", along)).collect()
-    }
-
-    fn grow(&mut self, _: f64, segments: &[f64]) {
-        self.point = self.point * segments.first().copied().unwrap_or(1.0);
-    }
-
-    fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
-        self.point = at.point(self.point);
-        self.along.iter_mut().for_each(|along| *along = at.point(*along));
-        Ok(Mirrored::default())
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
+        let along = self.along.iter_mut().map(|along| Geometry::Direction("along", along));
+        [Geometry::Point(&mut self.point)].into_iter().chain(along).collect()
     }
 }

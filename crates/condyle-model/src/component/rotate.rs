@@ -3,7 +3,7 @@
 //! Generator: (a, 0). For an axis through another point, put a [`Place`](super::Place) before it
 //! and its inverse after it.
 
-use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
+use super::{Contract, Geometry, Kind, Port, PortType};
 use condyle_math::Vec3;
 
 /// A hinge: rotation by one angle about one axis.
@@ -19,18 +19,7 @@ impl Rotate {
 }
 
 impl Contract for Rotate {
-    fn outputs(&self) -> (PortType, usize) {
-        (PortType::Transform, 1)
-    }
-
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
-        vec![("axis", &mut self.axis)]
-    }
-
-    fn grow(&mut self, _: f64, _: &[f64]) {}
-
-    fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
-        self.axis = at.turning(self.axis);
-        Ok(Mirrored::default())
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
+        vec![Geometry::Turning("axis", &mut self.axis)]
     }
 }

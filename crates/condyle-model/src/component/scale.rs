@@ -11,7 +11,7 @@
 //! mirrored; these are the only kinks. Generator: M′·M⁻¹, which is not rigid. Normals are
 //! transformed by the inverse transpose M⁻ᵀ, which is M at 1/s.
 
-use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
+use super::{Contract, Geometry, Kind, Port, PortType};
 use condyle_math::{Mat3, Scalar, Vec3};
 
 /// The smallest factor; smaller ones are clamped.
@@ -36,21 +36,9 @@ impl Contract for Scale {
         true
     }
 
-    fn outputs(&self) -> (PortType, usize) {
-        (PortType::Transform, 1)
-    }
-
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
-        self.along.axis_mut().map(|axis| ("axis", axis)).into_iter().collect()
-    }
-
-    fn grow(&mut self, _: f64, _: &[f64]) {}
-
-    fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
-        if let Some(axis) = self.along.axis_mut() {
-            *axis = at.point(*axis);
-        }
-        Ok(Mirrored::default())
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
+        let axis = self.along.axis_mut().into_iter();
+        axis.map(|axis| Geometry::Direction("axis", axis)).collect()
     }
 }
 

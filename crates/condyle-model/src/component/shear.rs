@@ -5,7 +5,7 @@
 //! transpose, which transforms normals, is I - s·n·aᵀ. Generator: a·nᵀ, which is not rigid. Kinks:
 //! amounts are clamped to ±10⁶.
 
-use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
+use super::{Contract, Geometry, Kind, Port, PortType};
 use condyle_math::{Mat3, Scalar, Vec3};
 
 /// A shear by one amount: the displacement per unit of distance from the plane, dimensionless; 0 is the
@@ -28,20 +28,11 @@ impl Contract for Shear {
         true
     }
 
-    fn outputs(&self) -> (PortType, usize) {
-        (PortType::Transform, 1)
-    }
-
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
-        vec![("along", &mut self.along), ("across", &mut self.across)]
-    }
-
-    fn grow(&mut self, _: f64, _: &[f64]) {}
-
-    fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
-        self.along = at.point(self.along);
-        self.across = at.point(self.across);
-        Ok(Mirrored::default())
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
+        vec![
+            Geometry::Direction("along", &mut self.along),
+            Geometry::Direction("across", &mut self.across),
+        ]
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Generator: (0, a).
 
-use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
+use super::{Contract, Geometry, Kind, Port, PortType};
 use condyle_math::Vec3;
 
 /// A slider: translation by one distance along one axis.
@@ -18,18 +18,7 @@ impl Translate {
 }
 
 impl Contract for Translate {
-    fn outputs(&self) -> (PortType, usize) {
-        (PortType::Transform, 1)
-    }
-
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
-        vec![("axis", &mut self.axis)]
-    }
-
-    fn grow(&mut self, _: f64, _: &[f64]) {}
-
-    fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
-        self.axis = at.point(self.axis);
-        Ok(Mirrored::default())
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
+        vec![Geometry::Direction("axis", &mut self.axis)]
     }
 }

@@ -7,6 +7,7 @@ mod knee;
 mod lanes;
 mod legs;
 mod limb;
+mod measured;
 mod names;
 mod octopus;
 mod rib_cage;

@@ -37,7 +37,7 @@ mod quartic;
 
 pub use pairs::ContactPair;
 
-use super::{Contract, Kind, Mirrored, Port, PortType, Reflection};
+use super::{Contract, Geometry, Kind, Mirrored, Port, PortType, Reflection};
 use closest::distance;
 use condyle_math::{Affine, Lane, Mat3, Scalar, Vec3};
 use pairs::Places;
@@ -76,11 +76,7 @@ impl Contract for Contact {
         self.before || port.name != "before"
     }
 
-    fn outputs(&self) -> (PortType, usize) {
-        (PortType::Transform, 1)
-    }
-
-    fn directions(&mut self) -> Vec<(&'static str, &mut Vec3)> {
+    fn geometry(&mut self) -> Vec<Geometry<'_>> {
         vec![]
     }
 
