@@ -31,7 +31,8 @@ fn root(model: &Model, id: SegmentId) -> SegmentId {
 /// belong to the caller, and the meaning of the numbers of a user's law is unknown.
 fn grows_whole(model: &Model) -> bool {
     model.components().iter().all(|component| match component.law {
-        Law::Custom(_) => false,
+        // What a measured length drives, an angle for example, changes with it.
+        Law::Custom(_) | Law::RelativePosition(_) => false,
         Law::Translate(_) => match component.inputs[0] {
             Signal::Output(id, _) => {
                 matches!(model.components()[id.index()].law, Law::Map(_) | Law::Combine(_))

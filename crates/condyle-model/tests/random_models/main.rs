@@ -46,7 +46,7 @@ fn eight_postures_at_once_conform() {
 
 #[test]
 fn the_jacobian_equals_central_differences_and_duals() {
-    let mut rows = 0;
+    let (mut rows, mut points, mut kinks) = (0, 0, 0);
     for seed in 0..TREES {
         let (model, stored) = grow::random_model(seed);
         let program = Program::compile(&model);
@@ -110,13 +110,20 @@ fn the_jacobian_equals_central_differences_and_duals() {
                         exact = v;
                     }
                 });
-                let difference =
-                    (ahead.segment(id) * point - behind.segment(id) * point) * (0.5 / h);
+                let [up, down] = [&ahead, &behind].map(|pose| pose.segment(id) * point);
+                let difference = (up - down) * (0.5 / h);
                 let size = 1.0 + exact.norm() + world.norm();
-                assert!(
-                    (exact - difference).norm() < 1e-7 * size,
-                    "seed {seed}: {direction} {id:?}"
-                );
+                // Near singular angles the slope changes fast, as at a kink.
+                let sides = (up - world) - (world - down);
+                if sides.norm() < 1e-4 * h * size {
+                    points += 1;
+                    assert!(
+                        (exact - difference).norm() < 1e-7 * size,
+                        "seed {seed}: {direction} {id:?}: {exact:?} {difference:?}"
+                    );
+                } else {
+                    kinks += 1;
+                }
                 let dual = dual_pose.segment(id) * point.cast();
                 let dual = Vec3::new(dual.x.partials[0], dual.y.partials[0], dual.z.partials[0]);
                 assert!((exact - dual).norm() < 1e-9 * size, "seed {seed}: {direction} {id:?}");
@@ -124,6 +131,7 @@ fn the_jacobian_equals_central_differences_and_duals() {
         }
     }
     assert!(rows > 1000, "only {rows} rows away from kinks");
+    assert!(points > 10_000 && kinks * 200 < points, "{points} points, {kinks} at kinks");
 }
 
 #[test]
