@@ -240,23 +240,22 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// The residual of a goal that counts: one that is met on its side does not.
-    pub(super) fn counted(&self, goal: usize, row: usize) -> f64 {
-        let residual = self.residuals[row];
+    /// Whether a goal holds on one side of a plane, and the point is there.
+    pub(super) fn is_met_aside(&self, goal: usize) -> bool {
         let one_sided = self.question.goals.goals[goal].aim.is_one_sided();
-        if one_sided { residual.min(0.0) } else { residual }
+        one_sided && self.question.rows_of(goal).all(|row| self.residuals[row] > 0.0)
     }
 
     /// Squares that count, as (weight, residual, row) at the pose that was evaluated last.
     fn squares(&self) -> impl Iterator<Item = (f64, f64, usize)> + '_ {
         (0..self.question.goals.goals.len()).flat_map(move |goal| {
+            let rows = self.question.rows_of(goal);
             let weight = match self.entry(goal) {
-                Entry::Square(weight) => weight,
+                Entry::Square(weight) if !self.is_met_aside(goal) => weight,
                 _ => 0.0,
             };
-            let rows = self.question.rows_of(goal).map(move |row| (weight, goal, row));
-            let counted = rows.map(|(weight, goal, row)| (weight, self.counted(goal, row), row));
-            counted.filter(|&(weight, off, _)| weight > 0.0 && off != 0.0)
+            let counted = rows.map(move |row| (weight, self.residuals[row], row));
+            counted.filter(|&(weight, ..)| weight > 0.0)
         })
     }
 
@@ -432,10 +431,8 @@ impl<'a> Descent<'a> {
     /// Appends the rows of goals that enter as squares and are not met on their side.
     pub(super) fn squared_rows(&self, rows: &mut Vec<f64>) {
         for goal in 0..self.question.goals.goals.len() {
-            for row in self.question.rows_of(goal) {
-                let met = self.question.goals.goals[goal].aim.is_one_sided()
-                    && self.residuals[row] > ACTIVE;
-                if matches!(self.entry(goal), Entry::Square(_)) && !met {
+            if matches!(self.entry(goal), Entry::Square(_)) && !self.is_met_aside(goal) {
+                for row in self.question.rows_of(goal) {
                     rows.extend((0..self.question.unknown_len()).map(|i| self.slope(row, i)));
                 }
             }

@@ -147,9 +147,10 @@ fn answer(descent: &Descent<'_>, iterations: u32, by: Vec<By>) -> Answer {
     let question = descent.question;
     let goals = question.goals.goals.iter().enumerate();
     let misses = goals.map(|(i, goal)| {
-        let squares = question.rows_of(i).map(|row| descent.counted(i, row).powi(2));
+        let squares = question.rows_of(i).map(|row| descent.residuals[row].powi(2));
+        let off = squares.sum::<f64>().sqrt();
         Miss {
-            off: squares.sum::<f64>().sqrt(),
+            off: if descent.is_met_aside(i) { 0.0 } else { off },
             angle: goal.aim.is_angle(question.model),
             weighted: goal.weight.is_some(),
         }

@@ -17,8 +17,11 @@ fn met_at(model: &Model, stored: &[f64], dice: &mut Dice) -> Vec<Aim> {
     let rigid: Vec<SegmentId> = model.segment_ids().filter(|&id| !program.deforms(id)).collect();
     let mut pick = |list: &[SegmentId]| list[(dice.next().abs() * list.len() as f64) as usize];
     let all: Vec<SegmentId> = model.segment_ids().collect();
-    let [a, b] = [pick(&all), pick(&all)];
+    let a = pick(&all);
     let [c, d] = [pick(&rigid), pick(&rigid)];
+    // Sight of a point of the same segment does not change.
+    let others: Vec<SegmentId> = all.iter().copied().filter(|&id| id != c).collect();
+    let b = pick(&others);
     let point: Anchor = (Some(a), dice.vector());
     let place = pose.segment(a) * point.1;
     let in_segment = |id: SegmentId, p: Vec3| {
@@ -66,13 +69,16 @@ fn dice_normal(along: Vec3) -> Vec3 {
     (along + Vec3::new(0.4, -0.7, 0.2)).normalized()
 }
 
+/// What rounding of values about 1 leaves of a quotient over [`STEP`], where no coordinate moves a goal.
+const ROUNDING: f64 = 1e-9;
+const STEP: f64 = 1e-5;
+
 fn largest(list: &[f64]) -> f64 {
     list.iter().fold(0.0, |m: f64, x| m.max(x.abs()))
 }
 
 #[test]
 fn derivatives_are_those_of_the_values() {
-    let step = 1e-5;
     for seed in 0..40 {
         let mut dice = Dice(!seed);
         let model = tree(seed, Vec3::ZERO);
@@ -124,34 +130,35 @@ fn derivatives_are_those_of_the_values() {
             descent.gradient(&mut gradient);
             let value = descent.objective();
             let one_sided = goals.goals.iter().any(|goal| goal.aim.is_one_sided());
-            assert!(value > 0.0 || one_sided, "{seed}: kind {kind} says nothing");
+            let still = one_sided || largest(&slopes) < ROUNDING;
+            assert!(value > 0.0 || still, "{seed}: kind {kind} says nothing");
             let mut exact = vec![0.0; n * n];
             descent.evaluate_at(&rest);
             descent.hessian(&mut exact);
             for i in 0..n {
                 let mut at = |from: &[f64], sign: f64| {
-                    descent.evaluate_at(&moved(from, i, sign * step));
+                    descent.evaluate_at(&moved(from, i, sign * STEP));
                     let mut gradient = vec![0.0; n];
                     descent.gradient(&mut gradient);
                     (descent.objective(), descent.residuals.clone(), gradient)
                 };
                 let (ahead, behind) = (at(&away, 1.0), at(&away, -1.0));
                 for row in 0..ahead.1.len() {
-                    let slope = (ahead.1[row] - behind.1[row]) / (2.0 * step);
+                    let slope = (ahead.1[row] - behind.1[row]) / (2.0 * STEP);
                     let off = (slope - slopes[row * n + i]).abs();
-                    assert!(off < 1e-7 * largest(&slopes), "{seed} kind {kind} {row}, {i}: {off}");
+                    assert!(off < 1e-7 * largest(&slopes) + ROUNDING, "{seed} kind {kind} {row}, {i}: {off}");
                 }
-                let slope = (ahead.0 - behind.0) / (2.0 * step);
+                let slope = (ahead.0 - behind.0) / (2.0 * STEP);
                 let off = (slope - gradient[i]).abs();
-                assert!(off <= 1e-7 * largest(&gradient), "{seed} kind {kind} {i}: {off}");
+                assert!(off < 1e-7 * largest(&gradient) + ROUNDING, "{seed} kind {kind} {i}: {off}");
                 // The square of one side has a kink in its slope where it begins.
                 if one_sided {
                     continue;
                 }
                 let (ahead, behind) = (at(&rest, 1.0).2, at(&rest, -1.0).2);
                 for row in i..n {
-                    let off = ((ahead[row] - behind[row]) / (2.0 * step) - exact[row * n + i]).abs();
-                    assert!(off < 1e-7 * largest(&exact), "{seed} kind {kind} {row}, {i}: {off}");
+                    let off = ((ahead[row] - behind[row]) / (2.0 * STEP) - exact[row * n + i]).abs();
+                    assert!(off < 1e-7 * largest(&exact) + ROUNDING, "{seed} kind {kind} {row}, {i}: {off}");
                 }
             }
         }
