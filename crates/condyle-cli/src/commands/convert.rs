@@ -68,7 +68,12 @@ impl Convert {
             }
             read => read?,
         };
-        let bytes = match warned(&self.input, read) {
+        let content = warned(&self.input, read);
+        if self.rate.is_some() && !matches!(content, Content::Poses(_)) {
+            let what = self.input.display();
+            return Err(Failure::new(format!("{what}: --rate is for poses (.json) with times")));
+        }
+        let bytes = match content {
             Content::Poses(_) if target.id != Id::Document => self.motion_as(None, target)?,
             Content::Table(table) if target.id != Id::Document => {
                 self.motion_as(Some(table), target)?
@@ -161,10 +166,6 @@ impl Convert {
             }
             return rewritten(&self.input, table, target);
         };
-        if let (Some(_), false) = (self.rate, poses) {
-            let what = self.input.display();
-            return Err(Failure::new(format!("{what}: --rate is for poses (.json) with times")));
-        }
         let model = warned(model_path, open::model(model_path)?);
         let mut motion = match table {
             None => self.poses(&model)?,

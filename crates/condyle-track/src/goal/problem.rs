@@ -51,6 +51,8 @@ pub(super) struct Stage {
     pub rest: f64,
     /// The pose to be near.
     pub near: Rest,
+    /// Whether the Hessian near the minimum is that of the Lagrangian.
+    pub curved: bool,
 }
 
 /// How one goal enters.
@@ -578,7 +580,8 @@ impl Problem for Descent<'_> {
                 None => (f64::NEG_INFINITY, f64::INFINITY),
             };
         }
-        if local.curved {
+        // Where goals are squares and the last digits do not matter, the curvature is not worth its cost.
+        if local.curved && self.stage.curved {
             self.curved_hessian(&mut local.hessian);
         } else {
             self.hessian(&mut local.hessian);

@@ -14,7 +14,7 @@ const STARTS: u32 = 12;
 /// A first descent draws near: goals as squares, so that a radian off rest weighs as much as a
 /// millimetre of a goal.
 const NEAR: Stopping =
-    Stopping { tolerance: 1e-6, floor: 1e-16, feasibility: 1e-6, iterations: 100, trust: 0.5 };
+    Stopping { tolerance: 1e-5, floor: 1e-16, feasibility: 1e-6, iterations: 100, trust: 0.5 };
 /// The last one goes on until steps are rounding.
 const CLOSE: Stopping =
     Stopping { tolerance: 1e-21, floor: 1e-28, feasibility: 1e-10, iterations: 200, trust: 0.5 };
@@ -25,9 +25,16 @@ const KEPT: f64 = 1e-9;
 /// Of two answers the later is taken if it is nearer to rest, or misses less, by this share.
 const BETTER: f64 = 1e-7;
 
+/// Of the places to which first descents come, so many different ones are followed to the end.
+const FOLLOWED: usize = 4;
+/// Two places are the same if no coordinate differs by more than this, in radians or metres.
+const SAME: f64 = 1e-3;
+
 /// One descent's end.
 struct End {
     stored: Vec<f64>,
+    /// What was minimised.
+    value: f64,
     answer: Answer,
 }
 
@@ -38,29 +45,46 @@ struct End {
 /// many numbers as the model stores.
 pub fn solve(model: &Model, goals: &Goals) -> Answer {
     let question = Question::new(model, goals);
-    let as_asked = |exact| Stage { exact, weighted: 1.0, rest: 1.0, near: goals.rest.clone() };
-    let (mut met, mut near): (Option<End>, Option<End>) = (None, None);
-    let mut iterations = 0;
+    let as_asked = |exact: Option<f64>| Stage {
+        exact,
+        weighted: 1.0,
+        rest: 1.0,
+        near: goals.rest.clone(),
+        curved: exact.is_none(),
+    };
     let starts = 1 + if question.unknown_len() == 0 { 0 } else { STARTS };
-    for start in 0..starts {
-        let Some(drawn) = descend(&question, as_asked(Some(1.0)), &start_of(&question, start), &NEAR)
-        else {
-            continue;
+    let drawn = |start| descend(&question, as_asked(Some(1.0)), &start_of(&question, start), &NEAR);
+    let mut near: Vec<End> = (0..starts).filter_map(drawn).collect();
+    let closed = |end: &End| end.answer.closure_error <= super::MET;
+    near.sort_by(|a, b| closed(b).cmp(&closed(a)).then(a.value.total_cmp(&b.value)));
+    let mut iterations: u32 = near.iter().map(|end| end.answer.iterations).sum();
+    let mut different: Vec<End> = vec![];
+    for end in near {
+        let off = |other: &End| {
+            let both = end.stored.iter().zip(&other.stored);
+            both.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
         };
-        let exact = descend(&question, as_asked(None), &drawn.stored, &CLOSE);
-        iterations += drawn.answer.iterations;
-        if let Some(exact) = exact {
-            iterations += exact.answer.iterations;
-            let nearer = |met: &End| exact.answer.rest < met.answer.rest * (1.0 - BETTER);
-            if exact.answer.is_met() && met.as_ref().is_none_or(nearer) {
-                met = Some(exact);
-            }
-        }
-        let less = |near: &End| misses_less(&drawn.answer, &near.answer);
-        if near.as_ref().is_none_or(less) {
-            near = Some(drawn);
+        if different.len() < FOLLOWED && different.iter().all(|other| off(other) > SAME) {
+            different.push(end);
         }
     }
+    let mut met: Option<End> = None;
+    for near in &different {
+        // A pose that meets goals costs more than the one near it that need not.
+        if met.as_ref().is_some_and(|met| near.value >= met.value) {
+            break;
+        }
+        let Some(exact) = descend(&question, as_asked(None), &near.stored, &CLOSE) else { continue };
+        iterations += exact.answer.iterations;
+        let nearer = |met: &End| exact.value < met.value * (1.0 - BETTER);
+        if exact.answer.is_met() && met.as_ref().is_none_or(nearer) {
+            met = Some(exact);
+        }
+    }
+    let near = different.into_iter().reduce(|best, end| match misses_less(&end.answer, &best.answer) {
+        true => end,
+        false => best,
+    });
     let mut end = match (met, near) {
         (Some(met), _) => met,
         (None, Some(near)) => {
@@ -70,10 +94,11 @@ pub fn solve(model: &Model, goals: &Goals) -> Answer {
         }
         // Nothing could be evaluated: the rest pose with what it lacks.
         (None, None) => {
-            let rest = goals.rest.pose.clone();
-            let mut descent = Descent::new(&question, as_asked(None), &rest);
-            descent.evaluate_at(&rest);
-            End { answer: answer(&descent, 0, vec![By::Rest; model.coordinates().len()]), stored: rest }
+            let stored = goals.rest.pose.clone();
+            let mut descent = Descent::new(&question, as_asked(None), &stored);
+            descent.evaluate_at(&stored);
+            let answer = answer(&descent, 0, vec![By::Rest; model.coordinates().len()]);
+            End { stored, value: f64::NAN, answer }
         }
     };
     end.answer.starts = starts;
@@ -98,25 +123,28 @@ fn misses_less(a: &Answer, b: &Answer) -> bool {
 fn least_missed(question: &Question<'_>, mut end: End) -> (End, u32) {
     let mut iterations = 0;
     let near = question.goals.rest.clone();
-    let mut stages =
-        vec![Stage { exact: Some(1.0), weighted: LITTLE, rest: LITTLE, near: near.clone() }];
-    for kept in 0..=3 {
-        if kept > 0 {
-            let stiffness = vec![KEPT; near.stiffness.len()];
-            let near = Rest { pose: end.stored.clone(), stiffness, sums: vec![] };
-            stages.push(Stage { exact: Some(1.0), weighted: 0.0, rest: 1.0, near });
-        }
-        let stage = stages[kept].clone();
-        if let Some(next) = descend(question, stage, &end.stored, &CLOSE) {
+    let first = Stage {
+        exact: Some(1.0),
+        weighted: LITTLE,
+        rest: LITTLE,
+        near: near.clone(),
+        curved: true,
+    };
+    let mut stage = first.clone();
+    for _ in 0..4 {
+        if let Some(next) = descend(question, stage.clone(), &end.stored, &CLOSE) {
             iterations += next.answer.iterations;
             let closed = next.answer.closure_error <= super::MET.max(end.answer.closure_error);
             if closed && next.answer.missed() <= end.answer.missed() {
                 end = next;
             }
         }
+        let stiffness = vec![KEPT; near.stiffness.len()];
+        let near = Rest { pose: end.stored.clone(), stiffness, sums: vec![] };
+        stage = Stage { weighted: 0.0, rest: 1.0, near, ..stage };
     }
     // R is measured by the rest that was asked for.
-    let mut descent = Descent::new(question, Stage { rest: 1.0, near, ..stages[0].clone() }, &end.stored);
+    let mut descent = Descent::new(question, Stage { rest: 1.0, ..first }, &end.stored);
     descent.evaluate_at(&end.stored);
     end.answer.rest = descent.rest_value();
     (end, iterations)
@@ -139,7 +167,7 @@ fn descend(
     descent.evaluate_at(&stored);
     let by = determined::judge(&descent);
     let answer = answer(&descent, summary.iterations, by);
-    Some(End { stored, answer })
+    Some(End { stored, value: summary.objective, answer })
 }
 
 /// The answer at the pose that was evaluated last.

@@ -103,7 +103,7 @@ fn derivatives_are_those_of_the_values() {
         let terms: Vec<_> = numbers.map(|id| (id, dice.next())).collect();
         let sum = terms.iter().map(|&(id, factor)| factor * model.value(&rest, id)).sum();
         of_rest.rest.sums = vec![PostureTarget { terms, rest: sum, stiffness: 0.3 }];
-        let nothing = Stage { exact: Some(1.0), weighted: 1.0, rest: 0.0, near: of_rest.rest.clone() };
+        let nothing = Stage { exact: Some(1.0), weighted: 1.0, rest: 0.0, near: of_rest.rest.clone(), curved: false };
         let mut asked: Vec<(Goals, Stage)> = aims
             .into_iter()
             .map(|aim| {
