@@ -162,12 +162,7 @@ pub const FORMATS: &[Format] = &[
         name: "toml",
         title: "documents that people write",
         endings: &["toml"],
-        reads: &[
-            ContentKind::Model,
-            ContentKind::Setup,
-            ContentKind::Names,
-            ContentKind::Goals,
-        ],
+        reads: &[ContentKind::Model, ContentKind::Setup, ContentKind::Names, ContentKind::Goals],
         writes: &[ContentKind::Model],
         sniff: |bytes| document::kind(bytes).is_some(),
         read: |bytes, include| {

@@ -6,7 +6,7 @@ use condyle_math::{Quat, Vec3};
 use condyle_model::{CoordinateId, Model};
 
 /// The most frames that a motion between key poses may have.
-const MOST_FRAMES: f64 = 1e7;
+const MOST_FRAMES: f64 = 1e6;
 /// How far from a whole number of frames the last key may be, and still get a frame.
 const WHOLE: f64 = 1e-6;
 
@@ -40,9 +40,14 @@ impl Keys {
     /// default. Orientations turn about one axis from key to key, the shorter way, at constant speed.
     ///
     /// # Errors
-    /// `keys/none` without keys, `keys/rate` if the rate is no positive number or gives more than ten million
+    /// `keys/none` without keys, `keys/rate` if the rate is no positive number or gives more than a million
     /// frames, `keys/times` if times do not rise.
-    pub fn sample(&self, model: &Model, rate: f64, between: Interpolation) -> Result<Motion, Error> {
+    pub fn sample(
+        &self,
+        model: &Model,
+        rate: f64,
+        between: Interpolation,
+    ) -> Result<Motion, Error> {
         let (Some(&first), Some(&last)) = (self.times.first(), self.times.last()) else {
             return Err(Error::new("keys/none", "there are no key poses"));
         };
@@ -54,8 +59,12 @@ impl Keys {
         if !self.times.windows(2).all(|pair| pair[0] < pair[1]) {
             return Err(Error::new("keys/times", "the times of the key poses do not rise"));
         }
-        let times: Vec<f64> =
-            (0..=frames as usize).map(|i| (first + i as f64 / rate).min(last)).collect();
+        let at = |frame: usize| {
+            let time = first + frame as f64 / rate;
+            // The last key itself where rounding alone is between.
+            if (last - time) * rate < WHOLE { last } else { time }
+        };
+        let times: Vec<f64> = (0..=frames as usize).map(at).collect();
         let mut motion = Motion { frames: vec![self.frames[0].clone(); times.len()], times };
         for id in model.coordinate_ids() {
             let keys: Vec<usize> =
@@ -190,8 +199,7 @@ mod tests {
         let motion = keys(&list).sample(&model(), 8.0, Interpolation::Linear).unwrap();
         assert_eq!(motion.times.len(), 17);
         for (time, frame) in motion.times.iter().zip(&motion.frames) {
-            let angle =
-                if *time < 1.5 { 2.0 * (time - 1.0) } else { 1.0 - 2.0 * (time - 1.5) };
+            let angle = if *time < 1.5 { 2.0 * (time - 1.0) } else { 1.0 - 2.0 * (time - 1.5) };
             assert!((frame[0] - angle).abs() < 1e-14, "{time}: {frame:?}");
             // One key: constant.
             assert_eq!(frame[1], 0.5);
@@ -208,8 +216,7 @@ mod tests {
 
     #[test]
     fn splines_meet_the_keys_and_never_leave_them() {
-        let list =
-            [(0.0, 0.0), (0.5, 1.0), (0.75, 1.0), (2.0, 3.0), (2.25, 3.1), (3.0, -1.0)];
+        let list = [(0.0, 0.0), (0.5, 1.0), (0.75, 1.0), (2.0, 3.0), (2.25, 3.1), (3.0, -1.0)];
         let all = list.map(|(time, angle)| (time, Some(angle), None, None));
         let motion = keys(&all).sample(&model(), 100.0, Interpolation::Spline).unwrap();
         let at = |time: f64| motion.frames[(time * 100.0).round() as usize][0];
@@ -244,7 +251,10 @@ mod tests {
         let motion = short.sample(&model(), 10.0, Interpolation::Linear).unwrap();
         assert_eq!((motion.frames.len(), motion.frames[3][0]), (4, 1.0));
         for rate in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e9] {
-            assert_eq!(short.sample(&model(), rate, Interpolation::Linear).unwrap_err().code(), "keys/rate");
+            assert_eq!(
+                short.sample(&model(), rate, Interpolation::Linear).unwrap_err().code(),
+                "keys/rate"
+            );
         }
         let none = Keys::default().sample(&model(), 60.0, Interpolation::Linear);
         assert_eq!(none.unwrap_err().code(), "keys/none");

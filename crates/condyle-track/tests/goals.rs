@@ -95,8 +95,7 @@ fn of_three_links_the_pose_nearest_to_rest_is_stationary() {
         assert!((sum(f64::cos, 0) - place[0]).abs() < 1e-10);
         assert!((sum(f64::sin, 0) - place[1]).abs() < 1e-10);
         // Lagrange: q is in the plane of the gradients of x and y, so q · (∂x × ∂y) = 0.
-        let across: Vec<[f64; 2]> =
-            (0..3).map(|i| [-sum(f64::sin, i), sum(f64::cos, i)]).collect();
+        let across: Vec<[f64; 2]> = (0..3).map(|i| [-sum(f64::sin, i), sum(f64::cos, i)]).collect();
         let [x, y] = [0, 1].map(|k| Vec3::new(across[0][k], across[1][k], across[2][k]));
         let normal = x.cross(y).normalized();
         assert!(normal.dot(Vec3::new(q[0], q[1], q[2])).abs() < 1e-9, "{q:?}");
@@ -164,8 +163,7 @@ fn distances_directions_planes_and_values() {
     assert_eq!(answer.by, [By::Rest, By::Goals]);
     // A sum of two angles is shared evenly.
     let rotation = Quat::from_axis_angle(Vec3::Z, 1.2);
-    let answer =
-        of(vec![Aim::Orientation { segment: second, relative_to: None, rotation }]);
+    let answer = of(vec![Aim::Orientation { segment: second, relative_to: None, rotation }]);
     close(&answer, &[0.6, 0.6]);
     let answer = of(vec![Aim::Orientation { segment: second, relative_to: Some(first), rotation }]);
     close(&answer, &[0.0, 1.2]);
@@ -339,4 +337,24 @@ fn a_compass_whose_rod_closes_a_loop_opens_as_far() {
         assert!((q[3] - 0.1 * half.sin()).abs() < 1e-9, "{q:?}");
         assert!((q[0] + q[2] - 0.5 * (q[0] + q[1])).abs() < 1e-9, "{q:?}");
     }
+}
+
+#[test]
+fn what_cannot_move_or_be_measured_stays_at_rest() {
+    let model = chain(&[0.3, 0.25]).build().unwrap();
+    let point = |x| Aim::Point { point: end(&model, 0.25), at: at(x, 0.0) };
+    let mut goals = asked(&model, vec![point(0.5)]);
+    goals.held = model.coordinate_ids().collect();
+    let answer = solve(&model, &goals);
+    assert_eq!((answer.coordinates, answer.by), (vec![0.0, 0.0], vec![By::Held; 2]));
+    assert!((answer.misses[0].off - 0.05).abs() < 1e-15);
+    for x in [f64::NAN, f64::INFINITY, 1e300] {
+        let answer = solve(&model, &asked(&model, vec![point(x)]));
+        assert!(!answer.is_met() && answer.coordinates.iter().all(|q| q.is_finite()), "{answer:?}");
+    }
+    // Nothing asked of a model without coordinates.
+    let mut b = ModelBuilder::new("block");
+    b.segment("block", None);
+    let block = b.build().unwrap();
+    assert!(solve(&block, &Goals::of(&block)).is_met());
 }

@@ -286,7 +286,8 @@ pub use condyle_model::{
     ModelBuilder, Pose, Program, Range, SegmentId, Signal,
 };
 pub use condyle_motion::{
-    self as motion, AngleUnit, Interpolation, Keys, LengthUnit, Motion, Observed, Posture, Recording, Table,
+    self as motion, AngleUnit, Interpolation, Keys, LengthUnit, Motion, Observed, Posture,
+    Recording, Table,
 };
 
 /// The README's examples, run as tests.

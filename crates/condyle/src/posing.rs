@@ -79,7 +79,8 @@ pub fn resolve(model: &Model, list: &GoalList, rest: Option<&[f64]>) -> Result<G
         if let Some(aim) = names.aim(&goal.aim) {
             if let Some(segment) = aim.deformed(&names.program) {
                 let name = &model.segment(segment).name;
-                let message = format!("`{name}` is scaled or sheared, so its axes are at no right angles");
+                let message =
+                    format!("`{name}` is scaled or sheared, so its axes are at no right angles");
                 let help = "name points of it instead";
                 names.said(&goal.name, "goals/deformed", message, help.to_owned());
                 continue;
@@ -95,6 +96,8 @@ pub fn resolve(model: &Model, list: &GoalList, rest: Option<&[f64]>) -> Result<G
             goals.rest.stiffness[id.index()] = *stiffness;
         }
     }
+    // In the order of the text.
+    names.errors.sort_by_key(|e| e.place.and_then(|place| place.byte));
     Error::of(names.errors).map_or(Ok(goals), Err)
 }
 

@@ -47,7 +47,10 @@ impl Pose {
         };
         let posed = posing::pose(&model, &list, rest.as_deref()).map_err(|error| {
             let text = std::fs::read_to_string(&self.goals).ok();
-            Failure::from(OpenError { path: self.goals.clone(), cause: Cause::Content { error, text } })
+            Failure::from(OpenError {
+                path: self.goals.clone(),
+                cause: Cause::Content { error, text },
+            })
         })?;
         if let Some(path) = &self.output {
             output::write(path, poses::write(&model, &posed.answer.coordinates).as_bytes())?;

@@ -210,7 +210,8 @@ pub fn read(
 
 /// What a point may be, for messages.
 const POINT: &str = "the name of a marker, or { segment = \"…\", at = [x, y, z] }";
-const PLACE: &str = "the name of a marker, [x, y, z], { segment = \"…\", at = [x, y, z] }, or \"rest\"";
+const PLACE: &str =
+    "the name of a marker, [x, y, z], { segment = \"…\", at = [x, y, z] }, or \"rest\"";
 
 impl<'s> Reader<'s> {
     fn goals(&mut self, top: &Fields<'_>) -> GoalList {
@@ -241,7 +242,8 @@ impl<'s> Reader<'s> {
                 let aim = parse(self, entry, &fields);
                 // A weight that is wrong was reported.
                 let (Some(aim), None | Some(Some(_))) = (aim, weight) else { continue };
-                let goal = NamedGoal { name: self.named(&entry.key), aim, weight: weight.flatten() };
+                let goal =
+                    NamedGoal { name: self.named(&entry.key), aim, weight: weight.flatten() };
                 placed.push((entry.key.spot, goal));
             }
         }
@@ -276,9 +278,7 @@ impl<'s> Reader<'s> {
             .and_then(|node| self.positive(node, "distance"));
         let node = self.required(fields, "points", "a list of two points")?;
         let points = match self.list(node, "points")? {
-            [first, second] => {
-                [first, second].map(|node| self.place(node, "points", false))
-            }
+            [first, second] => [first, second].map(|node| self.place(node, "points", false)),
             list => {
                 let message = format!("`points` has {} points", list.len());
                 self.length(node.spot, message, "give two");
@@ -303,7 +303,11 @@ impl<'s> Reader<'s> {
                 _ => self.angles_of(node, fields).map(Some),
             },
             (None, None) => {
-                self.missing(fields, "turn", "three angles, `quaternion = [x, y, z, w]`, or \"rest\"");
+                self.missing(
+                    fields,
+                    "turn",
+                    "three angles, `quaternion = [x, y, z, w]`, or \"rest\"",
+                );
                 None
             }
         };

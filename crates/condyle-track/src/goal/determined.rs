@@ -5,7 +5,7 @@
 //! (K⁻¹Aᵀ (A K⁻¹ Aᵀ)⁻¹ A)ᵢᵢ: 1 where they alone say where it is, 0 where they say nothing.
 
 use super::answer::By;
-use super::problem::Descent;
+use super::problem::{Descent, Question};
 use crate::tracker::FIXED;
 use condyle_model::CoordinateId;
 
@@ -20,7 +20,7 @@ const DEPENDENT: f64 = 1e-7;
 /// Judges every coordinate at the current pose, which is evaluated.
 pub(super) fn judge(descent: &Descent<'_>) -> Vec<By> {
     let question = descent.question;
-    let (model, n) = (question.model, question.unknown_len());
+    let n = question.unknown_len();
     let (rows, multipliers, active) = descent.multipliers();
     let (equal, _) = descent.shape();
     let mut pushed = vec![0.0; n];
@@ -69,6 +69,12 @@ pub(super) fn judge(descent: &Descent<'_>) -> Vec<By> {
             }
         }
     }
+    of_coordinates(question, &by)
+}
+
+/// From what is said of the unknowns, what each coordinate follows from.
+pub(super) fn of_coordinates(question: &Question<'_>, by: &[By]) -> Vec<By> {
+    let model = question.model;
     let of = |id: CoordinateId| {
         let coordinate = model.coordinate(id);
         if coordinate.follows.is_some() {
@@ -82,9 +88,8 @@ pub(super) fn judge(descent: &Descent<'_>) -> Vec<By> {
             unknown => by[unknown as usize],
         });
         let own: Vec<By> = own.collect();
-        let has = |one: By| own.contains(&one);
         match () {
-            () if has(By::Limit) => By::Limit,
+            () if own.contains(&By::Limit) => By::Limit,
             () if own.iter().all(|by| *by == own[0]) => own[0],
             () => By::Shared,
         }

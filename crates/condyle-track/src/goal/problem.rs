@@ -270,7 +270,8 @@ impl<'a> Descent<'a> {
         if let Some((place, ..)) = self.question.stored[unknown] {
             return stored[place] - self.stage.near.pose[place];
         }
-        let of = |list: &[f64]| Quat::from(std::array::from_fn::<f64, 4, _>(|i| list[place.start + i]));
+        let of =
+            |list: &[f64]| Quat::from(std::array::from_fn::<f64, 4, _>(|i| list[place.start + i]));
         let turn: Vec3 = (of(&self.stage.near.pose).conjugate() * of(stored)).normalized().log();
         let first = self.question.model.tangent_range(id).start;
         turn.to_array()[self.question.directions[unknown] - first]
@@ -285,13 +286,14 @@ impl<'a> Descent<'a> {
     fn sums(&self) -> impl Iterator<Item = (f64, f64, Vec<(usize, f64)>)> + '_ {
         let (model, program) = (self.question.model, &self.question.program);
         self.stage.near.sums.iter().map(move |sum| {
-            let value = |&(id, factor): &(CoordinateId, f64)| {
-                factor * self.pose.coordinate(model, id)[0]
-            };
+            let value =
+                |&(id, factor): &(CoordinateId, f64)| factor * self.pose.coordinate(model, id)[0];
             let off = sum.terms.iter().map(value).sum::<f64>() - sum.rest;
             let entries = sum.terms.iter().flat_map(|&(id, factor)| {
                 let entries = program.coordinate_directions(model, id).iter();
-                entries.map(move |&(direction, slot)| (direction, factor * self.jacobian.derivative(slot)))
+                entries.map(move |&(direction, slot)| {
+                    (direction, factor * self.jacobian.derivative(slot))
+                })
             });
             let known = entries.filter_map(|(direction, slope)| {
                 let unknown = self.question.unknowns[direction as usize];
@@ -475,8 +477,7 @@ impl<'a> Descent<'a> {
             // One that would have to pull is not active.
             let pulls = |i: usize| multipliers[equal + i] < 0.0;
             let before = active.len();
-            let kept: Vec<usize> =
-                (0..before).filter(|&i| !pulls(i)).map(|i| active[i]).collect();
+            let kept: Vec<usize> = (0..before).filter(|&i| !pulls(i)).map(|i| active[i]).collect();
             if kept.len() == before {
                 return (all, multipliers, active);
             }
@@ -509,8 +510,7 @@ impl<'a> Descent<'a> {
                 }
             }
             for row in 0..n {
-                square[row * n + unknown] =
-                    (gradients[0][row] - gradients[1][row]) / (2.0 * STEP);
+                square[row * n + unknown] = (gradients[0][row] - gradients[1][row]) / (2.0 * STEP);
             }
         }
         self.tangent.fill(0.0);
@@ -531,7 +531,8 @@ impl<'a> Descent<'a> {
 fn least_squares(rows: &[f64], gradient: &[f64], free: &[bool]) -> Vec<f64> {
     let n = gradient.len();
     let m = if n == 0 { 0 } else { rows.len() / n };
-    let dot = |a: &[f64], b: &[f64]| -> f64 { (0..n).filter(|&i| free[i]).map(|i| a[i] * b[i]).sum() };
+    let dot =
+        |a: &[f64], b: &[f64]| -> f64 { (0..n).filter(|&i| free[i]).map(|i| a[i] * b[i]).sum() };
     let row = |i: usize| &rows[i * n..(i + 1) * n];
     let mut matrix = vec![0.0; m * m];
     for i in 0..m {

@@ -52,7 +52,7 @@ pub fn solve(model: &Model, goals: &Goals) -> Answer {
         near: goals.rest.clone(),
         curved: exact.is_none(),
     };
-    let starts = 1 + if question.unknown_len() == 0 { 0 } else { STARTS };
+    let starts = if question.unknown_len() == 0 { 0 } else { 1 + STARTS };
     let drawn = |start| descend(&question, as_asked(Some(1.0)), &start_of(&question, start), &NEAR);
     let mut near: Vec<End> = (0..starts).filter_map(drawn).collect();
     let closed = |end: &End| end.answer.closure_error <= super::MET;
@@ -74,17 +74,20 @@ pub fn solve(model: &Model, goals: &Goals) -> Answer {
         if met.as_ref().is_some_and(|met| near.value >= met.value) {
             break;
         }
-        let Some(exact) = descend(&question, as_asked(None), &near.stored, &CLOSE) else { continue };
+        let Some(exact) = descend(&question, as_asked(None), &near.stored, &CLOSE) else {
+            continue;
+        };
         iterations += exact.answer.iterations;
         let nearer = |met: &End| exact.value < met.value * (1.0 - BETTER);
         if exact.answer.is_met() && met.as_ref().is_none_or(nearer) {
             met = Some(exact);
         }
     }
-    let near = different.into_iter().reduce(|best, end| match misses_less(&end.answer, &best.answer) {
-        true => end,
-        false => best,
-    });
+    let near =
+        different.into_iter().reduce(|best, end| match misses_less(&end.answer, &best.answer) {
+            true => end,
+            false => best,
+        });
     let mut end = match (met, near) {
         (Some(met), _) => met,
         (None, Some(near)) => {
@@ -92,12 +95,14 @@ pub fn solve(model: &Model, goals: &Goals) -> Answer {
             iterations += more;
             end
         }
-        // Nothing could be evaluated: the rest pose with what it lacks.
+        // Nothing can move, or be evaluated: the rest pose with what it lacks.
         (None, None) => {
             let stored = goals.rest.pose.clone();
             let mut descent = Descent::new(&question, as_asked(None), &stored);
             descent.evaluate_at(&stored);
-            let answer = answer(&descent, 0, vec![By::Rest; model.coordinates().len()]);
+            let by = vec![By::Rest; question.unknown_len()];
+            let by = determined::of_coordinates(&question, &by);
+            let answer = answer(&descent, 0, by);
             End { stored, value: f64::NAN, answer }
         }
     };
@@ -225,7 +230,8 @@ fn start_of(question: &Question<'_>, start: u32) -> Vec<f64> {
             None => {
                 let turn = [0, 1, 2].map(|i| share * PI * (2.0 * at(unknown + i) - 1.0));
                 let place = question.model.stored_range(id);
-                let rest = Quat::from(std::array::from_fn::<f64, 4, _>(|i| stored[place.start + i]));
+                let rest =
+                    Quat::from(std::array::from_fn::<f64, 4, _>(|i| stored[place.start + i]));
                 let turned = (rest * Quat::exp(turn.into())).normalized();
                 stored[place].copy_from_slice(&turned.to_array());
                 unknown += 3;

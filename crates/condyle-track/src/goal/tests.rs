@@ -44,10 +44,7 @@ fn met_at(model: &Model, stored: &[f64], dice: &mut Dice) -> Vec<Aim> {
     vec![
         Aim::Point { point, at: (None, place) },
         Aim::Point { point, at: (Some(b), in_segment(b, place)) },
-        Aim::Distance {
-            points: [point, far],
-            distance: (place - pose.segment(b) * far.1).norm(),
-        },
+        Aim::Distance { points: [point, far], distance: (place - pose.segment(b) * far.1).norm() },
         Aim::Orientation { segment: c, relative_to: None, rotation: Quat::from_mat3(turned) },
         Aim::Orientation {
             segment: c,
@@ -98,12 +95,19 @@ fn derivatives_are_those_of_the_values() {
         let mut of_rest = Goals::of(&model);
         of_rest.rest.pose = rest.clone();
         of_rest.rest.stiffness.iter_mut().for_each(|k| *k = 0.5 + dice.next().abs());
-        let numbers =
-            model.coordinate_ids().filter(|&id| model.coordinate(id).kind != CoordinateKind::Orientation);
+        let numbers = model
+            .coordinate_ids()
+            .filter(|&id| model.coordinate(id).kind != CoordinateKind::Orientation);
         let terms: Vec<_> = numbers.map(|id| (id, dice.next())).collect();
         let sum = terms.iter().map(|&(id, factor)| factor * model.value(&rest, id)).sum();
         of_rest.rest.sums = vec![PostureTarget { terms, rest: sum, stiffness: 0.3 }];
-        let nothing = Stage { exact: Some(1.0), weighted: 1.0, rest: 0.0, near: of_rest.rest.clone(), curved: false };
+        let nothing = Stage {
+            exact: Some(1.0),
+            weighted: 1.0,
+            rest: 0.0,
+            near: of_rest.rest.clone(),
+            curved: false,
+        };
         let mut asked: Vec<(Goals, Stage)> = aims
             .into_iter()
             .map(|aim| {
@@ -146,19 +150,29 @@ fn derivatives_are_those_of_the_values() {
                 for row in 0..ahead.1.len() {
                     let slope = (ahead.1[row] - behind.1[row]) / (2.0 * STEP);
                     let off = (slope - slopes[row * n + i]).abs();
-                    assert!(off < 1e-7 * largest(&slopes) + ROUNDING, "{seed} kind {kind} {row}, {i}: {off}");
+                    assert!(
+                        off < 1e-7 * largest(&slopes) + ROUNDING,
+                        "{seed} kind {kind} {row}, {i}: {off}"
+                    );
                 }
                 let slope = (ahead.0 - behind.0) / (2.0 * STEP);
                 let off = (slope - gradient[i]).abs();
-                assert!(off < 1e-7 * largest(&gradient) + ROUNDING, "{seed} kind {kind} {i}: {off}");
+                assert!(
+                    off < 1e-7 * largest(&gradient) + ROUNDING,
+                    "{seed} kind {kind} {i}: {off}"
+                );
                 // The square of one side has a kink in its slope where it begins.
                 if one_sided {
                     continue;
                 }
                 let (ahead, behind) = (at(&rest, 1.0).2, at(&rest, -1.0).2);
                 for row in i..n {
-                    let off = ((ahead[row] - behind[row]) / (2.0 * STEP) - exact[row * n + i]).abs();
-                    assert!(off < 1e-7 * largest(&exact) + ROUNDING, "{seed} kind {kind} {row}, {i}: {off}");
+                    let off =
+                        ((ahead[row] - behind[row]) / (2.0 * STEP) - exact[row * n + i]).abs();
+                    assert!(
+                        off < 1e-7 * largest(&exact) + ROUNDING,
+                        "{seed} kind {kind} {row}, {i}: {off}"
+                    );
                 }
             }
         }
