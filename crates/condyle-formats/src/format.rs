@@ -4,7 +4,7 @@
 //! documentation.
 
 #[cfg(feature = "document")]
-use crate::document::{self, Document, Kind, names::NameTable, setup::TrackSetup};
+use crate::document::{self, Document, Kind, goals::GoalList, names::NameTable, setup::TrackSetup};
 #[cfg(feature = "opensim")]
 use crate::opensim::{self, setup};
 #[cfg(feature = "poses")]
@@ -29,6 +29,8 @@ pub enum ContentKind {
     Setup,
     /// A table of names.
     Names,
+    /// What a pose should do.
+    Goals,
     /// A scene for viewers.
     Scene,
 }
@@ -44,6 +46,7 @@ impl ContentKind {
             Self::Poses => "poses",
             Self::Setup => "a tracking setup",
             Self::Names => "a table of names",
+            Self::Goals => "goals of a pose",
             Self::Scene => "a scene",
         }
     }
@@ -71,6 +74,9 @@ pub enum Content {
     /// A table of names.
     #[cfg(feature = "document")]
     Names(NameTable),
+    /// What a pose should do.
+    #[cfg(feature = "document")]
+    Goals(GoalList),
     /// A setup of inverse kinematics.
     #[cfg(feature = "opensim")]
     Setup(setup::IkSetup),
@@ -95,6 +101,8 @@ impl Content {
             Self::TrackSetup(_) => ContentKind::Setup,
             #[cfg(feature = "document")]
             Self::Names(_) => ContentKind::Names,
+            #[cfg(feature = "document")]
+            Self::Goals(_) => ContentKind::Goals,
             #[cfg(feature = "opensim")]
             Self::Setup(_) | Self::Tasks(_) => ContentKind::Setup,
         }
@@ -154,7 +162,7 @@ pub const FORMATS: &[Format] = &[
         name: "toml",
         title: "documents that people write",
         endings: &["toml"],
-        reads: &[ContentKind::Model, ContentKind::Setup, ContentKind::Names],
+        reads: &[ContentKind::Model, ContentKind::Setup, ContentKind::Names, ContentKind::Goals],
         writes: &[ContentKind::Model],
         sniff: |bytes| document::kind(bytes).is_some(),
         read: |bytes, include| {
@@ -162,6 +170,7 @@ pub const FORMATS: &[Format] = &[
             Ok(match document::kind(bytes) {
                 Some(Kind::Setup) => document::setup::read(text, include)?.map(Content::TrackSetup),
                 Some(Kind::Names) => document::names::read(text, include)?.map(Content::Names),
+                Some(Kind::Goals) => document::goals::read(text, include)?.map(Content::Goals),
                 // Those that are no document at all get the message of a model.
                 _ => document::read(text, include)?.map(Content::Document),
             })

@@ -6,12 +6,13 @@
 //! value = number (radians or metres) | [x, y, z, w] of an orientation
 //! ```
 //!
-//! Coordinates that a pose does not name keep their defaults.
+//! Coordinates that a pose does not name keep their defaults. Poses with a `"time": seconds` each are key
+//! poses, between which a motion goes ([`Poses::keys`]).
 
 use crate::text::utf8;
 use crate::{Diagnostic, Error, Place, Read};
 use condyle_model::{CoordinateKind, Model};
-use condyle_motion::Motion;
+use condyle_motion::{Keys, Motion};
 use serde_json::Value;
 
 /// Poses by the names of coordinates, before a model says what these are.
@@ -79,27 +80,120 @@ impl Poses {
     pub fn resolve(&self, model: &Model) -> Result<Resolved, Error> {
         let mut resolved = Resolved::default();
         for (index, entries) in self.poses.iter().enumerate() {
-            let mut stored = model.defaults();
-            let mut named = vec![false; model.coordinates().len()];
-            for (key, value) in entries {
-                let located = |error: Error| {
-                    let said = error.into_diagnostics().swap_remove(0);
-                    let message = format!("{}{}", self.place(index), said.message);
-                    Error::from(Diagnostic { message, ..said })
-                };
-                let id = model.find_coordinate(key).map_err(located)?;
-                named[id.index()] = true;
-                let place = model.stored_range(id);
-                let orientation = model.coordinate(id).kind == CoordinateKind::Orientation;
-                let numbers = numbers(key, value, orientation).map_err(located)?;
-                stored[place].copy_from_slice(&numbers);
-            }
+            let entries = entries.iter();
+            let (stored, named) =
+                pose(model, entries).map_err(|error| self.located(index, error))?;
             resolved.motion.times.push(index as f64);
             resolved.motion.frames.push(stored);
             resolved.named.push(named);
         }
         Ok(resolved)
     }
+
+    /// The key poses of a model: each has a `time` in seconds, later than that of the one before.
+    ///
+    /// # Errors
+    /// As [`Poses::resolve`]; `poses/time` where a time is missing, no number, or not after the one before.
+    ///
+    /// ```
+    /// use condyle_formats::poses;
+    /// use condyle_model::ModelBuilder;
+    /// # use condyle_math::Vec3;
+    /// # let mut b = ModelBuilder::new("arm");
+    /// # let forearm = b.segment("forearm", None);
+    /// # b.hinge("elbow", forearm, "flexion", Vec3::Z);
+    /// # let model = b.build()?;
+    /// let text = br#"[{"time": 0, "flexion": 0.5}, {"time": 0.4, "flexion": 1.5}]"#;
+    /// let keys = poses::read(text)?.value.keys(&model)?;
+    /// assert_eq!(keys.times, [0.0, 0.4]);
+    /// let twice = poses::read(br#"[{"time": 1}, {"time": 1}]"#)?.value.keys(&model);
+    /// let said = "pose 1: the time 1 is also that of pose 0 (give each pose a later time)";
+    /// assert_eq!(twice.unwrap_err().to_string(), said);
+    /// # Ok::<(), condyle_formats::Error>(())
+    /// ```
+    pub fn keys(&self, model: &Model) -> Result<Keys, Error> {
+        let mut keys = Keys::default();
+        for (index, entries) in self.poses.iter().enumerate() {
+            let wrong = |message: String, help: &str| {
+                self.located(index, Error::new("poses/time", message).with_help(help))
+            };
+            let time = match entries.iter().find(|(key, _)| key == TIME).map(|(_, v)| v) {
+                None => return Err(wrong("it has no `time`".into(), "give seconds")),
+                Some(value) => match value.as_f64() {
+                    Some(time) => time,
+                    None => return Err(wrong(format!("`time` is {value}"), "give seconds")),
+                },
+            };
+            if let Some(&before) = keys.times.last()
+                && time <= before
+            {
+                let message = if time == before {
+                    format!("the time {time} is also that of pose {}", index - 1)
+                } else {
+                    format!("the time {time} is before that of pose {}, {before}", index - 1)
+                };
+                return Err(wrong(message, "give each pose a later time"));
+            }
+            let entries = entries.iter().filter(|(key, _)| key != TIME);
+            let (stored, named) =
+                pose(model, entries).map_err(|error| self.located(index, error))?;
+            keys.times.push(time);
+            keys.frames.push(stored);
+            keys.named.push(named);
+        }
+        Ok(keys)
+    }
+
+    fn located(&self, index: usize, error: Error) -> Error {
+        let said = error.into_diagnostics().swap_remove(0);
+        let message = format!("{}{}", self.place(index), said.message);
+        Error::from(Diagnostic { message, ..said })
+    }
+}
+
+/// The key of a time among those of coordinates.
+const TIME: &str = "time";
+
+/// The stored numbers of one pose, and which coordinates it names.
+fn pose<'p>(
+    model: &Model,
+    entries: impl Iterator<Item = &'p (String, Value)>,
+) -> Result<(Vec<f64>, Vec<bool>), Error> {
+    let mut stored = model.defaults();
+    let mut named = vec![false; model.coordinates().len()];
+    for (key, value) in entries {
+        let id = model.find_coordinate(key).map_err(|error| match key.as_str() {
+            TIME => error.with_help("times are read with --rate, as key poses"),
+            _ => error,
+        })?;
+        named[id.index()] = true;
+        let place = model.stored_range(id);
+        let orientation = model.coordinate(id).kind == CoordinateKind::Orientation;
+        stored[place].copy_from_slice(&numbers(key, value, orientation)?);
+    }
+    Ok((stored, named))
+}
+
+/// Writes one pose, coordinates that follow others left out.
+///
+/// Numbers are written so that reading gives the same bits; what is no finite number is left out.
+///
+/// # Panics
+/// If `stored` has not as many numbers as the model stores.
+#[must_use]
+pub fn write(model: &Model, stored: &[f64]) -> String {
+    let keys = model.coordinate_keys();
+    let free = model.coordinate_ids().filter(|&id| model.coordinate(id).follows.is_none());
+    let lines = free.filter_map(|id| {
+        let numbers = &stored[model.stored_range(id)];
+        let value = match numbers {
+            [one] => Value::from(*one),
+            several => Value::from(several),
+        };
+        let finite = numbers.iter().all(|v| v.is_finite());
+        finite.then(|| format!("  {}: {value}", Value::from(keys[id.index()].as_str())))
+    });
+    format!("{{\n{}\n}}\n", lines.collect::<Vec<_>>().join(",\n"))
 }
 
 /// The stored numbers of a coordinate: one, or four of an orientation.

@@ -6,6 +6,7 @@
 //! | [`Orientations`] | orientations of inertial sensors, frame by frame |
 //! | [`Table`] | columns of numbers by name, as a file has them: a motion of no stated model |
 //! | [`Motion`] | the coordinates of one model, frame by frame |
+//! | [`Keys`] | poses at given times, and the motion between them |
 //! | [`Posture`] | the coordinates of one model at one time, set and read by coordinate |
 //!
 //! In memory, lengths are in metres, angles in radians, times in seconds; other units of a file are
@@ -14,6 +15,7 @@
 
 pub mod columns;
 pub mod difference;
+mod keys;
 mod length_unit;
 mod motion;
 mod orientations;
@@ -23,6 +25,7 @@ mod sample;
 mod table;
 mod virtual_markers;
 
+pub use keys::{Interpolation, Keys};
 pub use length_unit::LengthUnit;
 pub use motion::{BLANK, Motion};
 pub use orientations::Orientations;

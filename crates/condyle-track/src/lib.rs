@@ -50,6 +50,7 @@
 mod answer;
 mod branch;
 mod frame;
+pub mod goal;
 mod guess;
 mod problem;
 mod recorded;

@@ -255,6 +255,7 @@
 //! | [`motion`] | recordings, tables, motions, postures, differences |
 //! | [`tracking`] | recordings to motions; streams; orientations of inertial sensors |
 //! | [`scaling`] | a model as large as a person |
+//! | [`posing`] | the pose nearest to rest that meets goals |
 //! | [`check`] | findings about a model, or about a motion of it |
 //! | [`formats`], [`open`], [`encode`] | bytes to values and back, by path or not |
 //! | [`shipped`], [`scene`] | models that come along, animated scenes |
@@ -266,6 +267,8 @@ pub mod encode;
 pub mod matching;
 #[cfg(feature = "formats")]
 pub mod open;
+#[cfg(feature = "document")]
+pub mod posing;
 pub mod scaling;
 #[cfg(feature = "glb")]
 pub mod scene;
@@ -283,7 +286,8 @@ pub use condyle_model::{
     ModelBuilder, Pose, Program, Range, SegmentId, Signal,
 };
 pub use condyle_motion::{
-    self as motion, AngleUnit, LengthUnit, Motion, Observed, Posture, Recording, Table,
+    self as motion, AngleUnit, Interpolation, Keys, LengthUnit, Motion, Observed, Posture,
+    Recording, Table,
 };
 
 /// The README's examples, run as tests.

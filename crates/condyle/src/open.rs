@@ -7,14 +7,16 @@ use crate::tracking::Request;
 use condyle_diagnostics::did_you_mean;
 use condyle_diagnostics::{Diagnostic, Error, Read, nearest};
 #[cfg(feature = "document")]
-use condyle_formats::document::{self, names::NameTable};
+use condyle_formats::document::{self, goals::GoalList, names::NameTable};
 #[cfg(feature = "opensim")]
 use condyle_formats::opensim::setup::{IkSetup, IkTasks};
 #[cfg(feature = "poses")]
-use condyle_formats::poses::Resolved;
+use condyle_formats::poses::{Poses, Resolved};
 use condyle_formats::text::utf8;
 use condyle_formats::{Content, ContentKind, FORMATS, Format, Id};
 use condyle_model::Model;
+#[cfg(feature = "poses")]
+use condyle_motion::Keys;
 use condyle_motion::{Motion, Recording, Table};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -349,19 +351,48 @@ pub fn motion(path: &Path, model: &Model) -> Result<Read<Motion>, OpenError> {
     Ok(Read { value, warnings: [table.warnings, warnings].concat() })
 }
 
+/// Opens what a pose should do.
+///
+/// # Errors
+/// As [`content`].
+#[cfg(feature = "document")]
+pub fn goals(path: &Path) -> Result<Read<GoalList>, OpenError> {
+    only(path, ContentKind::Goals, |content| match content {
+        Content::Goals(list) => Some(list),
+        _ => None,
+    })
+}
+
 /// Poses of a model, in JSON.
 ///
 /// # Errors
 /// As [`content`]; names that the model does not have.
 #[cfg(feature = "poses")]
 pub fn poses(path: &Path, model: &Model) -> Result<Read<Resolved>, OpenError> {
+    resolved(path, |poses| poses.resolve(model))
+}
+
+/// Key poses of a model, in JSON: poses with times.
+///
+/// # Errors
+/// As [`content`]; names that the model does not have; times that are missing or do not rise.
+#[cfg(feature = "poses")]
+pub fn keys(path: &Path, model: &Model) -> Result<Read<Keys>, OpenError> {
+    resolved(path, |poses| poses.keys(model))
+}
+
+#[cfg(feature = "poses")]
+fn resolved<T>(
+    path: &Path,
+    resolve: impl FnOnce(&Poses) -> Result<T, Error>,
+) -> Result<Read<T>, OpenError> {
     let Read { value: poses, warnings } =
         only(path, ContentKind::Poses, |content| match content {
             Content::Poses(poses) => Some(poses),
             _ => None,
         })?;
-    let resolved = poses.resolve(model);
-    let value = resolved.map_err(|error| failed(path, Cause::Content { error, text: None }))?;
+    let value = resolve(&poses);
+    let value = value.map_err(|error| failed(path, Cause::Content { error, text: None }))?;
     Ok(Read { value, warnings })
 }
 

@@ -4,11 +4,13 @@ use super::{Limits, Outcome};
 use crate::failure::{Failure, warn_about, warned};
 use crate::motion_format as format;
 use crate::output;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use condyle::formats::document::{self, Document};
 use condyle::formats::{Content, ContentKind, Format, Id, trc};
 use condyle::open::Cause;
-use condyle::{AngleUnit, Mode, Model, Motion, Program, Table, encode, open, shipped};
+use condyle::{
+    AngleUnit, Interpolation, Mode, Model, Motion, Program, Table, encode, open, shipped,
+};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -24,12 +26,27 @@ pub(crate) struct Convert {
     /// scale in its parent at every frame, for programs without joint sets.
     #[arg(long, value_name = "M")]
     model: Option<PathBuf>,
+    /// Poses (.json) with a `time` each become a motion at so many frames a second.
+    #[arg(long, value_name = "N", requires = "model")]
+    rate: Option<f64>,
+    /// How coordinates go from one such pose to the next; orientations always turn the shorter way.
+    #[arg(long, value_enum, default_value_t = Curve::Spline, requires = "rate")]
+    between: Curve,
     /// First move coordinates to the nearest posture that the model allows.
     #[arg(long, value_enum, default_value_t = Limits::Off)]
     limits: Limits,
     /// The format of the output; by default that of its ending.
     #[arg(long, value_parser = format::names(&WRITTEN))]
     to: Option<String>,
+}
+
+/// How coordinates of one number go from key pose to key pose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Curve {
+    /// On straight lines.
+    Linear,
+    /// On a smooth curve that stays between the values of neighbouring poses.
+    Spline,
 }
 
 /// What can be written.
@@ -39,7 +56,7 @@ const WRITTEN: [ContentKind; 4] =
 /// The supported conversions, for the message about any other.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
                      to .glb (an animation) or .trc (the model's markers), and poses (.json) to all \
-                     of these; a model (.osim, .toml, or a shipped one by name) to .toml or .glb; \
+                     of these, with --rate as key poses; a model (.osim, .toml, or a shipped one by name) to .toml or .glb; \
                      a recording (.trc) to .trc or .csv";
 
 impl Convert {
@@ -51,7 +68,12 @@ impl Convert {
             }
             read => read?,
         };
-        let bytes = match warned(&self.input, read) {
+        let content = warned(&self.input, read);
+        if self.rate.is_some() && !matches!(content, Content::Poses(_)) {
+            let what = self.input.display();
+            return Err(Failure::new(format!("{what}: --rate is for poses (.json) with times")));
+        }
+        let bytes = match content {
             Content::Poses(_) if target.id != Id::Document => self.motion_as(None, target)?,
             Content::Table(table) if target.id != Id::Document => {
                 self.motion_as(Some(table), target)?
@@ -146,7 +168,7 @@ impl Convert {
         };
         let model = warned(model_path, open::model(model_path)?);
         let mut motion = match table {
-            None => warned(&self.input, open::poses(&self.input, &model)?).motion,
+            None => self.poses(&model)?,
             Some(table) => {
                 let (motion, warnings) = Motion::from_table(&model, &table);
                 warn_about(&self.input, &warnings);
@@ -159,6 +181,20 @@ impl Convert {
             _ => motion.make_effective(&Program::compile(&model), self.mode()),
         }
         format::encoded(target, &model, &motion, &self.name(), None, &[])
+    }
+
+    /// Poses as frames, or as keys between which a motion goes.
+    fn poses(&self, model: &Model) -> Result<Motion, Failure> {
+        let Some(rate) = self.rate else {
+            return Ok(warned(&self.input, open::poses(&self.input, model)?).motion);
+        };
+        let keys = warned(&self.input, open::keys(&self.input, model)?);
+        let between = match self.between {
+            Curve::Linear => Interpolation::Linear,
+            Curve::Spline => Interpolation::Spline,
+        };
+        let sampled = keys.sample(model, rate, between);
+        sampled.map_err(|error| Failure::new(format!("{}: {error}", self.input.display())))
     }
 
     /// The model's markers along a motion, as a recording in millimetres.

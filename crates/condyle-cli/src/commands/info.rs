@@ -10,6 +10,7 @@ use crate::failure::{Failure, warned};
 use crate::output;
 use clap::Args;
 use condyle::formats::Content;
+use condyle::formats::document::goals::NamedGoal;
 use condyle::open;
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -49,6 +50,11 @@ fn to_json(content: &Content) -> Value {
             "kind": "names",
             "names": table.iter().cloned().collect::<std::collections::BTreeMap<_, _>>(),
         }),
+        Content::Goals(list) => {
+            let goal =
+                |goal: &NamedGoal| json!({ "kind": goal.aim.kind(), "name": goal.name.text });
+            json!({ "kind": "goals", "goals": list.goals.iter().map(goal).collect::<Vec<_>>() })
+        }
         other => json!({ "kind": other.kind().name() }),
     }
 }
@@ -63,6 +69,11 @@ fn to_text(content: &Content) -> String {
         Content::Tasks(tasks) => setup::tasks_to_text(tasks),
         Content::TrackSetup(written) => setup::written_to_text(written),
         Content::Names(table) => format!("a table of {} names\n", table.len()),
+        Content::Goals(list) => {
+            let goal = |goal: &NamedGoal| format!("  {} {}\n", goal.aim.kind(), goal.name.text);
+            let goals: String = list.goals.iter().map(goal).collect();
+            format!("{} goals of a pose\n{goals}", list.goals.len())
+        }
         other => format!("{}\n", other.kind().name()),
     }
 }

@@ -7,6 +7,7 @@ mod demo;
 mod diff;
 mod fk;
 mod info;
+mod pose;
 mod scale;
 mod track;
 
@@ -29,6 +30,8 @@ enum Command {
     Check(check::Check),
     /// Pose a model: world transforms of all segments.
     Fk(fk::Fk),
+    /// Find the legal pose nearest to rest that meets goals, loops closed.
+    Pose(pose::Pose),
     /// Compute the motion of a model that follows recorded markers.
     Track(track::Track),
     /// Scale a model to the person of a static trial.
@@ -65,6 +68,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
         Command::Info(command) => command.run(),
         Command::Check(command) => command.run(),
         Command::Fk(command) => command.run(),
+        Command::Pose(command) => command.run(),
         Command::Track(command) => command.run(),
         Command::Scale(command) => command.run(),
         Command::Convert(command) => command.run(),

@@ -161,3 +161,62 @@ fn what_cannot_be_converted_is_told_what_can() {
     folder.write("bare.osim", bare);
     refused(&["m.mot", "m.trc", "--model", "bare.osim"], "has no markers to record");
 }
+
+#[test]
+fn key_poses_become_a_motion() {
+    let folder = Folder::with_leg("convert-keys");
+    folder.write(
+        "keys.json",
+        r#"[{"time": 1, "hip_flexion": 0, "knee_angle": -1}, {"time": 1.25, "hip_flexion": 1},
+            {"time": 2, "hip_flexion": 4, "knee_angle": 0}]"#,
+    );
+    let keys = ["convert", "keys.json", "-", "--to", "csv", "--model", "leg.osim", "--rate", "20"];
+    let run = |more: &[&str]| folder.condyle(&[&keys[..], more].concat()).expect(0);
+    let text = run(&["--between", "linear"]);
+    let (names, rows) = csv(&text);
+    assert_eq!(names[..3], ["time", "hip_flexion", "knee_angle"]);
+    assert_eq!(rows.len(), 21);
+    for row in &rows {
+        let t = row[0] - 1.0;
+        near(row[1], 4.0 * t, 1e-14);
+        // The second pose does not name the knee; what follows it does so in every frame.
+        near(row[2], t - 1.0, 1e-14);
+        near(row[3], 0.02 * (t - 1.0), 1e-15);
+    }
+    // With limits on the hip stops at 2, the end of its range.
+    let text = run(&["--between", "linear", "--limits", "on"]);
+    csv(&text).1.iter().for_each(|row| near(row[1], (4.0 * (row[0] - 1.0)).min(2.0), 1e-14));
+    // A smooth step between the two poses that name the knee: 3 t² - 2 t³.
+    let text = run(&[]);
+    for row in &csv(&text).1 {
+        let t = row[0] - 1.0;
+        near(row[2], 3.0 * t * t - 2.0 * t * t * t - 1.0, 1e-14);
+    }
+}
+
+#[test]
+fn key_poses_need_times_that_rise() {
+    let folder = Folder::with_leg("convert-no-keys");
+    folder.write("m.mot", leg::mot(3));
+    let run = |text: &str, rate: &str| {
+        folder.write("k.json", text);
+        let rate = format!("--rate={rate}");
+        folder.condyle(&["convert", "k.json", "o.mot", "--model", "leg.osim", &rate]).refused()
+    };
+    let said = run(r#"[{"time": 1}, {"time": 1}]"#, "10");
+    assert!(said.contains("k.json: pose 1: the time 1 is also that of pose 0"), "{said}");
+    let said = run(r#"[{"time": 1}, {"time": 0.5}]"#, "10");
+    assert!(said.contains("pose 1: the time 0.5 is before that of pose 0, 1"), "{said}");
+    let said = run(r#"[{"time": 1}, {}]"#, "10");
+    assert!(said.contains("pose 1: it has no `time` (give seconds)"), "{said}");
+    let said = run("[]", "10");
+    assert!(said.contains("there are no key poses"), "{said}");
+    let said = run(r#"[{"time": 0}, {"time": 1}]"#, "-1");
+    assert!(said.contains("-1 frames a second"), "{said}");
+    // Without --rate a time is no coordinate.
+    let plain = folder.condyle(&["convert", "k.json", "o.mot", "--model", "leg.osim"]).refused();
+    assert!(plain.contains("unknown coordinate `time` (times are read with --rate"), "{plain}");
+    let motion = ["convert", "m.mot", "o.csv", "--model", "leg.osim", "--rate", "10"];
+    let said = folder.condyle(&motion).refused();
+    assert!(said.contains("m.mot: --rate is for poses (.json) with times"), "{said}");
+}

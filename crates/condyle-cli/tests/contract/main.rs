@@ -10,6 +10,7 @@ mod document;
 mod fk;
 mod info;
 mod leg;
+mod pose;
 mod scale;
 mod shipped;
 mod track;

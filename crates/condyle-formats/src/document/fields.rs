@@ -283,6 +283,43 @@ impl Reader<'_> {
         }
     }
 
+    /// A number of 0 or more.
+    pub(super) fn not_negative(&mut self, node: &Node, label: &str) -> Option<f64> {
+        let number = self.number(node, label)?;
+        if number < 0.0 {
+            let message = format!("`{label}` is {number}");
+            self.texts.error(node.spot, "document/number", message, "give a number of 0 or more");
+        }
+        Some(number)
+    }
+
+    /// A number above 0.
+    pub(super) fn positive(&mut self, node: &Node, label: &str) -> Option<f64> {
+        let number = self.number(node, label)?;
+        if number <= 0.0 {
+            let message = format!("`{label}` is {number}");
+            self.texts.error(node.spot, "document/number", message, "give a number above 0");
+        }
+        Some(number)
+    }
+
+    /// A value of a coordinate in radians or metres. What kind the coordinate is only the model knows,
+    /// so in a document in degrees each value says its unit.
+    pub(super) fn value(&mut self, fields: &Fields<'_>, key: &str) -> Option<f64> {
+        let node = fields.get(key)?;
+        let unit = match fields.get("unit") {
+            Some(unit) => self.unit_of(unit, "unit")?,
+            None if self.angle_unit(node.spot) != 1.0 => {
+                let message = format!("`{key}` has no unit");
+                let help = "in a document in degrees give `unit = \"deg\"` or `unit = \"m\"`";
+                self.texts.error(node.spot, "document/unit", message, help);
+                1.0
+            }
+            None => 1.0,
+        };
+        Some(unit * self.number(node, key)?)
+    }
+
     /// One of a few words; the first of them is the default.
     pub(super) fn word<T: Copy>(
         &mut self,

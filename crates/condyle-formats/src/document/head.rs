@@ -26,16 +26,19 @@ pub enum Kind {
     Setup,
     /// Names in one model or recording, and what they are called in another.
     Names,
+    /// What a pose should do.
+    Goals,
 }
 
 /// Each kind, its name in a document, and what a sentence calls one.
-const KINDS: [(Kind, &str, &str); 6] = [
+const KINDS: [(Kind, &str, &str); 7] = [
     (Kind::Model, "model", "a model"),
     (Kind::Limit, "limit", "a limit"),
     (Kind::Law, "law", "a law"),
     (Kind::Recipe, "recipe", "a recipe"),
     (Kind::Setup, "setup", "a setup"),
     (Kind::Names, "names", "a list of names"),
+    (Kind::Goals, "goals", "a list of goals"),
 ];
 
 impl Kind {

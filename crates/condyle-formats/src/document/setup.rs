@@ -167,24 +167,6 @@ impl Reader<'_> {
         Some([first, last])
     }
 
-    fn not_negative(&mut self, node: &Node, label: &str) -> Option<f64> {
-        let number = self.number(node, label)?;
-        if number < 0.0 {
-            let message = format!("`{label}` is {number}");
-            self.texts.error(node.spot, "setup/number", message, "give a number of 0 or more");
-        }
-        Some(number)
-    }
-
-    fn positive(&mut self, node: &Node, label: &str) -> Option<f64> {
-        let number = self.number(node, label)?;
-        if number <= 0.0 {
-            let message = format!("`{label}` is {number}");
-            self.texts.error(node.spot, "setup/number", message, "give a number above 0");
-        }
-        Some(number)
-    }
-
     /// A coordinate that is held: its stiffness, or a table.
     fn held(&mut self, entry: &Entry) -> Option<SetupPosture> {
         let name = &entry.key.text;
@@ -232,23 +214,6 @@ impl Reader<'_> {
     fn stiffness(&mut self, fields: &Fields<'_>) -> Option<f64> {
         let node = self.required(fields, "stiffness", "a number above 0, such as 1e-5")?;
         self.positive(node, "stiffness")
-    }
-
-    /// A value of a coordinate in radians or metres. What kind the coordinate is only the model knows,
-    /// so in a document in degrees each value says its unit.
-    fn value(&mut self, fields: &Fields<'_>, key: &str) -> Option<f64> {
-        let node = fields.get(key)?;
-        let unit = match fields.get("unit") {
-            Some(unit) => self.unit_of(unit, "unit")?,
-            None if self.angle_unit(node.spot) != 1.0 => {
-                let message = format!("`{key}` has no unit");
-                let help = "in a document in degrees give `unit = \"deg\"` or `unit = \"m\"`";
-                self.texts.error(node.spot, "setup/unit", message, help);
-                1.0
-            }
-            None => 1.0,
-        };
-        Some(unit * self.number(node, key)?)
     }
 }
 

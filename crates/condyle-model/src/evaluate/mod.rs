@@ -45,3 +45,4 @@ pub use closure::ClosureRows;
 pub use jacobian::Jacobian;
 pub use pose::{ContactReport, Pose};
 pub use program::{Mode, Program, SizeMismatch};
+pub use rotation_rate::log_rate;

@@ -7,7 +7,7 @@ use condyle_math::Vec3;
 ///
 /// The inverse left Jacobian of SO(3), with θ = |ρ|:
 /// ρ̇ = ω - ½ ρ × ω + (1/θ² - (1 + cos θ)/(2 θ sin θ)) ρ × (ρ × ω).
-pub(super) fn log_rate(turn: Vec3, spin: Vec3) -> Vec3 {
+pub fn log_rate(turn: Vec3, spin: Vec3) -> Vec3 {
     let square = turn.norm_squared();
     // Near 0 the Taylor series; the omitted term is θ⁴/30240 of the factor.
     let factor = if square < 1e-6 {

@@ -32,7 +32,7 @@ mod pairs;
 mod posture;
 mod prior;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub use coordinate::{CoordinateTarget, Wanted};
 pub use marker::MarkerTarget;

@@ -10,10 +10,10 @@ use condyle_model::model::{Closure, Condition};
 use condyle_model::{Law, Mode, ModelBuilder, Pose, Program, SegmentId};
 
 /// Numbers between -1 and 1: SplitMix64 (Steele, Lea & Flood 2014).
-struct Dice(u64);
+pub(crate) struct Dice(pub u64);
 
 impl Dice {
-    fn next(&mut self) -> f64 {
+    pub(crate) fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -21,14 +21,14 @@ impl Dice {
         ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
-    fn vector(&mut self) -> Vec3 {
+    pub(crate) fn vector(&mut self) -> Vec3 {
         Vec3::new(self.next(), self.next(), self.next())
     }
 }
 
 /// A tree of a ball, hinges, a slide, a hinge that follows another and a stretch, with two markers a
 /// segment, and the end of a limb tied to a point of the world.
-fn tree(seed: u64, tied_to: Vec3) -> Model {
+pub(crate) fn tree(seed: u64, tied_to: Vec3) -> Model {
     let mut dice = Dice(seed);
     let mut b = ModelBuilder::new("tree");
     let mut segments: Vec<SegmentId> = vec![];

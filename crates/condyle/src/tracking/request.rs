@@ -248,7 +248,7 @@ fn check_weight(weight: f64, name: &str) -> Result<(), Error> {
 }
 
 /// Whether a name fits a pattern, in which `*` stands for any letters.
-fn fits_pattern(pattern: &str, name: &str) -> bool {
+pub(crate) fn fits_pattern(pattern: &str, name: &str) -> bool {
     let mut parts = pattern.split('*');
     let Some(mut rest) = name.strip_prefix(parts.next().unwrap_or_default()) else { return false };
     let Some(last) = parts.next_back() else { return rest.is_empty() };
