@@ -9,7 +9,7 @@ use condyle::formats::document::{self, Document};
 use condyle::formats::{Content, ContentKind, Format, Id, trc};
 use condyle::open::Cause;
 use condyle::{
-    AngleUnit, Interpolation, Mode, Model, Motion, Program, Table, encode, open, shipped,
+    AngleUnit, Interpolation, Mode, Model, Motion, Program, Table, encode, open, posing, shipped,
 };
 use std::path::{Path, PathBuf};
 
@@ -175,6 +175,16 @@ impl Convert {
                 motion
             }
         };
+        if self.limits == Limits::On {
+            let changed = posing::keep_limits(&model, &mut motion);
+            if changed > 0 {
+                eprintln!(
+                    "note: {changed} of {} frames broke limits between segments: theirs is the nearest \
+                     legal pose",
+                    motion.frames.len()
+                );
+            }
+        }
         match target.id {
             Id::Glb => return self.scene(&model, &motion),
             Id::Trc => return self.virtual_markers(&model, &motion),

@@ -5,7 +5,7 @@ use crate::failure::{Failure, warned};
 use crate::output;
 use clap::Args;
 use condyle::formats::poses::Resolved;
-use condyle::{Mode, Model, Motion, Pose, Program, open};
+use condyle::{Mode, Model, Motion, Pose, Program, open, posing};
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;
 
@@ -40,15 +40,17 @@ impl Fk {
         let requests = self.requests(&model)?;
         let program = Program::compile(&model);
         let mut pose = Pose::new(&program);
-        let mode = if self.limits == Limits::On { Mode::Posed } else { Mode::Open };
+        let mut solved = 0;
         let mut ignored = vec![0usize; model.coordinates().len()];
         let mut frames = Vec::with_capacity(requests.motion.frames.len());
         for (index, (time, stored)) in
             requests.motion.times.iter().zip(&requests.motion.frames).enumerate()
         {
-            program
-                .evaluate(stored, mode, &mut pose)
-                .map_err(|error| Failure::new(error.to_string()))?;
+            let evaluated = match self.limits {
+                Limits::On => posing::evaluate_legal(&model, &program, stored, &mut pose),
+                Limits::Off => program.evaluate(stored, Mode::Open, &mut pose).map(|()| false),
+            };
+            solved += usize::from(evaluated.map_err(|error| Failure::new(error.to_string()))?);
             for id in model.coordinate_ids() {
                 let named = requests.named.get(index).is_none_or(|n| n[id.index()]);
                 if named && model.coordinate(id).follows.is_some() {
@@ -74,6 +76,13 @@ impl Fk {
                     frames.len()
                 );
             }
+        }
+        if solved > 0 {
+            eprintln!(
+                "note: {solved} of {} frames broke limits between segments: theirs is the nearest legal \
+                 pose",
+                frames.len()
+            );
         }
         output::write(&self.output, format!("{}\n", json!({ "frames": frames })).as_bytes())?;
         Ok(Outcome::Done)

@@ -28,6 +28,8 @@ pub struct Program {
     pub(super) asked: Vec<(Number, Number)>,
     /// Register, lower and upper bound of every coordinate that posed mode clamps.
     pub(super) limits: Vec<(Number, f64, f64)>,
+    /// The limit rows that posed mode does not keep.
+    pub(super) measured_rows: Vec<usize>,
     pub(super) code: Code,
     pub(super) plan: DerivativePlan,
 }
@@ -113,6 +115,12 @@ impl Program {
     /// [`Pose::limit_row`](super::Pose::limit_row) gives the values of the last evaluation.
     pub fn limit_row_len(&self) -> usize {
         self.code.rows.len()
+    }
+
+    /// The limit rows that depend on what is measured between segments, or that bound a contact's gap:
+    /// posed mode does not keep them.
+    pub fn measured_limit_rows(&self) -> &[usize] {
+        &self.measured_rows
     }
 
     /// The directions on which a limit row depends, each with the slot of its derivative in a

@@ -251,6 +251,12 @@ impl Model {
         }
     }
 
+    /// The model without its loops.
+    #[must_use]
+    pub fn without_closures(&self) -> Self {
+        Self { closures: vec![], ..self.clone() }
+    }
+
     /// Everything that a component reads: the values at its ports, and the motions between the
     /// segments there.
     pub fn reads(&self, id: ComponentId) -> Vec<Signal> {

@@ -40,6 +40,7 @@
 
 mod answer;
 mod determined;
+mod legal;
 mod problem;
 mod rest;
 mod rows;
@@ -48,6 +49,7 @@ mod search;
 mod tests;
 
 pub use answer::{Answer, By, Miss};
+pub use legal::nearest_legal;
 pub use rest::{REST_ANGLE, REST_LENGTH, Rest};
 pub use search::solve;
 

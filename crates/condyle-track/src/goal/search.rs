@@ -16,7 +16,7 @@ const STARTS: u32 = 12;
 const NEAR: Stopping =
     Stopping { tolerance: 1e-5, floor: 1e-16, feasibility: 1e-6, iterations: 100, trust: 0.5 };
 /// The last one goes on until steps are rounding.
-const CLOSE: Stopping =
+pub(super) const CLOSE: Stopping =
     Stopping { tolerance: 1e-21, floor: 1e-28, feasibility: 1e-10, iterations: 200, trust: 0.5 };
 /// How much less rest counts where goals cannot be met.
 const LITTLE: f64 = 1e-4;
@@ -31,10 +31,10 @@ const FOLLOWED: usize = 4;
 const SAME: f64 = 1e-3;
 
 /// One descent's end.
-struct End {
-    stored: Vec<f64>,
+pub(super) struct End {
+    pub stored: Vec<f64>,
     /// What was minimised.
-    value: f64,
+    pub value: f64,
     answer: Answer,
 }
 
@@ -156,7 +156,7 @@ fn least_missed(question: &Question<'_>, mut end: End) -> (End, u32) {
 }
 
 /// Descends from a start; `None` where nothing can be evaluated.
-fn descend(
+pub(super) fn descend(
     question: &Question<'_>,
     stage: Stage,
     start: &[f64],
@@ -202,7 +202,7 @@ fn answer(descent: &Descent<'_>, iterations: u32, by: Vec<By>) -> Answer {
 
 /// Rest for start 0; for each other one a pose half or all of the way from rest to a place within the
 /// ranges, drawn from a fixed sequence.
-fn start_of(question: &Question<'_>, start: u32) -> Vec<f64> {
+pub(super) fn start_of(question: &Question<'_>, start: u32) -> Vec<f64> {
     let mut stored = question.goals.rest.pose.clone();
     if start == 0 {
         return stored;

@@ -106,6 +106,7 @@ fn compile(model: &Model, wanted: &[bool], moving: &[bool]) -> Program {
             constants: vec![],
             asked: vec![],
             limits: vec![],
+            measured_rows: vec![],
             code: Code {
                 scalars: model.stored_len(),
                 transforms: model.segments.len() + 2,
@@ -209,15 +210,20 @@ impl Compiler<'_> {
         let model = self.model;
         let motion = |segment: usize| model.segments[segment].motion;
         let followed = || model.coordinates.iter().filter_map(|c| c.follows);
-        let all = (0..wanted.len()).filter_map(motion).chain(followed());
+        // A limit on what is measured moves nothing, so that nothing has to read its outputs.
+        let bounds = |id: &ComponentId| {
+            self.measured[id.index()] && is_limit(&model.components[id.index()].law)
+        };
+        let measured = model.component_ids().filter(bounds).map(|id| Signal::Output(id, 0));
+        let measured: Vec<Signal> = measured.collect();
+        let moved = (0..wanted.len()).filter_map(motion);
+        let all = moved.chain(followed()).chain(measured);
         // Whether a transform has several readers does not depend on what is wanted.
         let (of_model, readers) = self.reached(order, all);
         self.readers = readers;
-        let limits = model.component_ids().filter(|id| {
-            // A limit on what is measured moves nothing, so that nothing has to read its outputs.
-            let read = of_model[id.index()] || self.measured[id.index()];
-            read && is_limit(&model.components[id.index()].law)
-        });
+        let limits = model
+            .component_ids()
+            .filter(|id| of_model[id.index()] && is_limit(&model.components[id.index()].law));
         let wanted = (0..wanted.len()).filter(|&segment| wanted[segment]).filter_map(motion);
         let limits = limits.map(|id| Signal::Output(id, 0));
         self.needed = self.reached(order, wanted.chain(followed()).chain(limits)).0;

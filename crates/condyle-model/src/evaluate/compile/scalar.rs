@@ -77,6 +77,7 @@ impl Compiler<'_> {
 
     pub(super) fn component(&mut self, id: ComponentId) {
         let component = &self.model.components[id.index()];
+        let first_row = self.program.code.rows.len();
         match &component.law {
             Law::Map(map) => {
                 let input = self.scalar(component.inputs[0]);
@@ -157,6 +158,9 @@ impl Compiler<'_> {
             | Law::Curve(_)
             | Law::Custom(_)
             | Law::Product(_) => self.share(id),
+        }
+        if self.measured[id.index()] || matches!(component.law, Law::Contact(_)) {
+            self.program.measured_rows.extend(first_row..self.program.code.rows.len());
         }
     }
 
