@@ -40,7 +40,9 @@
 
 mod answer;
 mod determined;
+mod lagrange;
 mod problem;
+mod question;
 mod rest;
 mod rows;
 mod search;
