@@ -54,7 +54,18 @@ impl Descent<'_> {
         let mut square = vec![0.0; n * n];
         let center = self.current.clone();
         let mut along = vec![0.0; self.question.model.tangent_len()];
+        // What moves no goal and no row has nothing but rest, of which the curvature is known.
+        let mut plain = vec![0.0; n * n];
+        self.hessian(&mut plain);
+        let still: Vec<bool> = (0..n).map(|unknown| !self.moves(unknown, &rows)).collect();
         for unknown in 0..n {
+            if still[unknown] {
+                for row in 0..n {
+                    let (low, high) = (row.min(unknown), row.max(unknown));
+                    square[row * n + unknown] = plain[high * n + low];
+                }
+                continue;
+            }
             for (gradient, step) in gradients.iter_mut().zip([STEP, -STEP]) {
                 along.fill(0.0);
                 along[self.question.directions[unknown]] = step;

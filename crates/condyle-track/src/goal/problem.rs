@@ -224,6 +224,14 @@ impl<'a> Descent<'a> {
         rows.flat_map(|row| (0..n).map(move |unknown| self.slope(row, unknown))).collect()
     }
 
+    /// Whether an unknown moves a goal, or one of some rows.
+    pub(super) fn moves(&self, unknown: usize, rows: &[f64]) -> bool {
+        let n = self.question.unknown_len();
+        let mut held = rows.iter().skip(unknown).step_by(n);
+        held.any(|v| *v != 0.0)
+            || (0..self.question.rows()).any(|row| self.slope(row, unknown) != 0.0)
+    }
+
     /// The gradient of what is minimised.
     pub(super) fn gradient(&self, gradient: &mut [f64]) {
         for (unknown, entry) in gradient.iter_mut().enumerate() {
