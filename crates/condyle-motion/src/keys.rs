@@ -175,8 +175,10 @@ mod tests {
         b.build().unwrap()
     }
 
-    /// Keys as (time, angle, shift, turn about x), each of which may be missing.
-    fn keys(list: &[(f64, Option<f64>, Option<f64>, Option<f64>)]) -> Keys {
+    /// Time, angle, shift, and turn about x; each but the time may be missing.
+    type Key = (f64, Option<f64>, Option<f64>, Option<f64>);
+
+    fn keys(list: &[Key]) -> Keys {
         let mut keys = Keys::default();
         for &(time, angle, shift, turn) in list {
             let q = Quat::from_axis_angle(Vec3::X, turn.unwrap_or(0.0)).to_array();

@@ -2,7 +2,7 @@
 //! are kept. The documents of `docs/posing.md` and the example.
 
 use condyle::formats::document::goals::{self, GoalList};
-use condyle::math::Vec3;
+use condyle::math::{Quat, Vec3};
 use condyle::posing::{By, Posed, pose};
 use condyle::{Mode, Model, Pose, Program, open};
 use std::path::Path;
@@ -112,6 +112,48 @@ fn a_place_out_of_reach_is_pointed_at() {
     assert!((1.1..1.5).contains(&missed), "{missed}");
     assert!(degrees(&human, &posed, "elbow_flex_r") < 5.0, "the elbow is straight");
     assert!(posed.answer.by.contains(&By::Limit));
+}
+
+#[test]
+fn places_that_legal_poses_reach_are_reached() {
+    let human = human();
+    let program = Program::compile(&human);
+    let mut at = Pose::new(&program);
+    let mut seed = 1_u64;
+    // Knuth's linear congruential numbers, from 0 to 1.
+    let mut drawn = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let mut missed = vec![];
+    for trial in 0..4 {
+        // Anywhere within the ranges; both hands, a foot and the head turned as it is are asked for.
+        let mut stored = human.defaults();
+        for id in human.coordinate_ids() {
+            let (lower, upper) = human.coordinate(id).range.bounds();
+            if lower.is_finite() && upper.is_finite() {
+                *human.value_mut(&mut stored, id) = lower + (upper - lower) * drawn();
+            }
+        }
+        program.evaluate(&stored, Mode::Posed, &mut at).unwrap();
+        let goals: String = ["RFIN", "LFIN", "r_toe"]
+            .map(|name| {
+                let p = marker(&human, &at, name);
+                let p = format!("[{}, {}, {}]", p.x, p.y, p.z);
+                format!("[point.{name}]\npoint = \"{name}\"\nat = {p}\n")
+            })
+            .concat();
+        let skull = at.segment(human.find_segment("skull").unwrap()).linear;
+        let [x, y, z, w] = Quat::from_mat3(skull).to_array();
+        let turn = format!("segment = \"skull\"\nquaternion = [{x}, {y}, {z}, {w}]\n");
+        let list = asked(&format!("hold = \"pelvis_*\"\n{goals}[orientation.skull]\n{turn}"));
+        let posed = pose(&human, &list, None).unwrap();
+        evaluated(&human, &posed);
+        if !posed.answer.is_met() {
+            missed.push((trial, posed.answer.misses));
+        }
+    }
+    assert!(missed.is_empty(), "{missed:?}");
 }
 
 #[test]

@@ -5,7 +5,8 @@
 //! (K⁻¹Aᵀ (A K⁻¹ Aᵀ)⁻¹ A)ᵢᵢ: 1 where they alone say where it is, 0 where they say nothing.
 
 use super::answer::By;
-use super::problem::{Descent, Question};
+use super::problem::Descent;
+use super::question::Question;
 use crate::tracker::FIXED;
 use condyle_model::CoordinateId;
 
@@ -100,7 +101,7 @@ pub(super) fn of_coordinates(question: &Question<'_>, by: &[By]) -> Vec<By> {
 /// The diagonal of the projection on the span of some rows, which become orthonormal.
 fn projected(rows: &mut [f64], n: usize) -> Vec<f64> {
     let mut parts = vec![0.0; n];
-    let count = if n == 0 { 0 } else { rows.len() / n };
+    let count = rows.len() / n.max(1);
     let square = |row: &[f64]| row.iter().map(|v| v * v).sum::<f64>();
     // Rows of other units are compared by their own length.
     for row in rows.chunks_exact_mut(n.max(1)) {

@@ -1,6 +1,7 @@
 //! The legal pose nearest to one that was asked for.
 
-use super::problem::{Question, Stage};
+use super::problem::Stage;
+use super::question::Question;
 use super::search::{CLOSE, descend, start_of};
 use super::{Goals, REST_ANGLE, REST_LENGTH, Rest};
 use condyle_model::{CoordinateKind, Mode, Model, Pose, Program};

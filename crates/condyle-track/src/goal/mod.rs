@@ -40,8 +40,10 @@
 
 mod answer;
 mod determined;
+mod lagrange;
 mod legal;
 mod problem;
+mod question;
 mod rest;
 mod rows;
 mod search;

@@ -1,17 +1,12 @@
 //! One descent as a least-squares problem: goals as rows or as squares, rest, loops and limits.
-//!
-//! Near the minimum the Hessian is that of the Lagrangian, ∇²(F - Σ y c): with goals as rows the
-//! curvature of F alone says little of how far to go along them. It is differenced from exact gradients,
-//! with multipliers y from least squares, and ρ cᵀc is added, which changes no step that satisfies the
-//! rows.
 
+use super::Rest;
+use super::question::Question;
 use super::rows::{Evaluated, Rows};
-use super::{Goals, Rest};
 use crate::tracker::FIXED;
 use condyle_math::{Quat, Vec3};
 use condyle_model::evaluate::ClosureRows;
-use condyle_model::{CoordinateId, CoordinateKind, Jacobian, Model, Pose, Program};
-use condyle_solve::cholesky;
+use condyle_model::{CoordinateId, CoordinateKind, Jacobian, Pose};
 use condyle_solve::least_squares::{LocalModel, Problem, Solver};
 
 /// A row that must not be negative is active below this, and a coordinate at its bound within it.
@@ -21,24 +16,6 @@ pub(super) const ACTIVE: f64 = 1e-9;
 const LENGTH: f64 = 10.0;
 /// A row shorter than this, in metres or radians per radian, is scaled as one of this length.
 const SHORT: f64 = 1e-4;
-/// Half the step of difference quotients, in radians or metres.
-const STEP: f64 = 1e-5;
-
-/// A model and what is asked of it, laid out for descents.
-pub(super) struct Question<'a> {
-    pub model: &'a Model,
-    pub program: Program,
-    pub goals: &'a Goals,
-    /// For each direction its unknown, or [`FIXED`]; for each unknown its direction and coordinate.
-    pub unknowns: Vec<u32>,
-    pub directions: Vec<usize>,
-    pub coordinates: Vec<CoordinateId>,
-    /// For each unknown of a coordinate of one number: where that is stored, and its bounds.
-    pub stored: Vec<Option<(usize, f64, f64)>>,
-    /// The first row of each goal, and the number of all rows.
-    pub first_rows: Vec<usize>,
-    pub limit_rows: usize,
-}
 
 /// How goals and rest enter a descent.
 #[derive(Clone)]
@@ -78,87 +55,6 @@ pub(super) struct Descent<'a> {
     tangent: Vec<f64>,
     /// Factors of the rows that must vanish.
     factors: Vec<f64>,
-}
-
-impl<'a> Question<'a> {
-    pub(super) fn new(model: &'a Model, goals: &'a Goals) -> Self {
-        let program = Program::compile(model);
-        let limit_rows = if goals.limits { program.limit_row_len() } else { 0 };
-        let moved = moved(model, &program, goals, limit_rows);
-        let mut question = Self {
-            model,
-            program,
-            goals,
-            unknowns: vec![FIXED; model.tangent_len()],
-            directions: vec![],
-            coordinates: vec![],
-            stored: vec![],
-            first_rows: vec![0],
-            limit_rows,
-        };
-        for goal in &goals.goals {
-            let next = question.rows() + goal.aim.rows();
-            question.first_rows.push(next);
-        }
-        for id in model.coordinate_ids() {
-            let coordinate = model.coordinate(id);
-            let still = coordinate.locked || coordinate.follows.is_some();
-            if still || goals.held.contains(&id) || !model.tangent_range(id).any(|d| moved[d]) {
-                continue;
-            }
-            let free = (f64::NEG_INFINITY, f64::INFINITY);
-            let (lower, upper) = if goals.limits { coordinate.range.bounds() } else { free };
-            for direction in model.tangent_range(id) {
-                question.unknowns[direction] = question.directions.len() as u32;
-                question.directions.push(direction);
-                question.coordinates.push(id);
-                let place = model.stored_range(id).start;
-                let number = coordinate.kind != CoordinateKind::Orientation;
-                question.stored.push(number.then_some((place, lower, upper)));
-            }
-        }
-        question
-    }
-
-    pub(super) fn unknown_len(&self) -> usize {
-        self.directions.len()
-    }
-
-    /// The number of residuals of all goals.
-    fn rows(&self) -> usize {
-        *self.first_rows.last().unwrap_or(&0)
-    }
-
-    /// The residuals of a goal among all.
-    pub(super) fn rows_of(&self, goal: usize) -> std::ops::Range<usize> {
-        self.first_rows[goal]..self.first_rows[goal + 1]
-    }
-
-    /// Puts the coordinates that are solved for within their bounds.
-    pub(super) fn clamp(&self, stored: &mut [f64]) {
-        for &(place, lower, upper) in self.stored.iter().flatten() {
-            stored[place] = stored[place].max(lower).min(upper);
-        }
-    }
-}
-
-/// For each direction whether it moves something that a goal, a loop, a limit or a sum of coordinates is
-/// about; all others are at rest.
-fn moved(model: &Model, program: &Program, goals: &Goals, limit_rows: usize) -> Vec<bool> {
-    let mut moved = vec![!model.closures().is_empty(); model.tangent_len()];
-    let mut mark = |entries: &[(u32, u32)]| {
-        entries.iter().for_each(|&(direction, _)| moved[direction as usize] = true);
-    };
-    for goal in &goals.goals {
-        goal.aim.segments().for_each(|segment| mark(program.segment_directions(segment)));
-        if let super::Aim::Coordinate { coordinate, .. } = goal.aim {
-            mark(program.coordinate_directions(model, coordinate));
-        }
-    }
-    let summed = goals.rest.sums.iter().flat_map(|sum| &sum.terms);
-    summed.for_each(|&(id, _)| mark(program.coordinate_directions(model, id)));
-    (0..limit_rows).for_each(|row| mark(program.limit_row_directions(row)));
-    moved
 }
 
 impl<'a> Descent<'a> {
@@ -328,6 +224,14 @@ impl<'a> Descent<'a> {
         rows.flat_map(|row| (0..n).map(move |unknown| self.slope(row, unknown))).collect()
     }
 
+    /// Whether an unknown moves a goal, or one of some rows.
+    pub(super) fn moves(&self, unknown: usize, rows: &[f64]) -> bool {
+        let n = self.question.unknown_len();
+        let mut held = rows.iter().skip(unknown).step_by(n);
+        held.any(|v| *v != 0.0)
+            || (0..self.question.rows()).any(|row| self.slope(row, unknown) != 0.0)
+    }
+
     /// The gradient of what is minimised.
     pub(super) fn gradient(&self, gradient: &mut [f64]) {
         for (unknown, entry) in gradient.iter_mut().enumerate() {
@@ -453,99 +357,6 @@ impl<'a> Descent<'a> {
             None => [false; 2],
         }
     }
-
-    /// The rows of derivatives that hold the current pose: those that must vanish, and those that must
-    /// not be negative, are active and pushed against; and the multiplier of each, by least squares over
-    /// the unknowns that are not at a bound.
-    ///
-    /// Evaluated at the current pose. `(rows, multipliers, which of the inequalities)`.
-    pub(super) fn multipliers(&self) -> (Vec<f64>, Vec<f64>, Vec<usize>) {
-        let n = self.question.unknown_len();
-        let (equal, least) = self.shape();
-        let (mut rows, mut others) = (vec![0.0; equal * n], vec![0.0; least * n]);
-        let (mut values, mut bounds) = (vec![0.0; equal], vec![0.0; least]);
-        self.derivatives(&mut rows, &mut others);
-        self.values(&mut values, &mut bounds);
-        let mut gradient = vec![0.0; n];
-        self.gradient(&mut gradient);
-        let free: Vec<bool> = (0..n).map(|i| self.at_bounds(i) == [false; 2]).collect();
-        let mut active: Vec<usize> = (0..least).filter(|&i| bounds[i] <= ACTIVE).collect();
-        loop {
-            let mut all = rows.clone();
-            active.iter().for_each(|&i| all.extend_from_slice(&others[i * n..(i + 1) * n]));
-            let multipliers = least_squares(&all, &gradient, &free);
-            // One that would have to pull is not active.
-            let pulls = |i: usize| multipliers[equal + i] < 0.0;
-            let before = active.len();
-            let kept: Vec<usize> = (0..before).filter(|&i| !pulls(i)).map(|i| active[i]).collect();
-            if kept.len() == before {
-                return (all, multipliers, active);
-            }
-            active = kept;
-        }
-    }
-
-    /// The Hessian of the Lagrangian at the current pose, by central differences of exact gradients; with
-    /// what makes it positive definite across the rows. Leaves another pose evaluated.
-    fn curved_hessian(&mut self, hessian: &mut [f64]) {
-        let n = self.question.unknown_len();
-        let (rows, multipliers, active) = self.multipliers();
-        let (equal, least) = self.shape();
-        let (mut c, mut g) = (vec![0.0; equal * n], vec![0.0; least * n]);
-        let mut gradients = [vec![0.0; n], vec![0.0; n]];
-        let mut square = vec![0.0; n * n];
-        let center = self.current.clone();
-        for unknown in 0..n {
-            for (gradient, step) in gradients.iter_mut().zip([STEP, -STEP]) {
-                self.tangent.fill(0.0);
-                self.tangent[self.question.directions[unknown]] = step;
-                let mut moved = center.clone();
-                self.question.model.retract(&center, &self.tangent, &mut moved);
-                self.evaluate_at(&moved);
-                self.gradient(gradient);
-                self.derivatives(&mut c, &mut g);
-                let lines = c.chunks_exact(n).chain(active.iter().map(|&i| &g[i * n..(i + 1) * n]));
-                for (line, y) in lines.zip(&multipliers) {
-                    gradient.iter_mut().zip(line).for_each(|(entry, slope)| *entry -= y * slope);
-                }
-            }
-            for row in 0..n {
-                square[row * n + unknown] = (gradients[0][row] - gradients[1][row]) / (2.0 * STEP);
-            }
-        }
-        self.tangent.fill(0.0);
-        let largest = (0..n).map(|i| square[i * n + i].abs()).fold(0.0, f64::max);
-        let longest = rows.chunks_exact(n).map(|r| r.iter().map(|v| v * v).sum::<f64>());
-        let across = 10.0 * largest / longest.fold(1e-300, f64::max);
-        for i in 0..n {
-            for j in 0..=i {
-                let crossing: f64 = rows.chunks_exact(n).map(|r| r[i] * r[j]).sum();
-                hessian[i * n + j] =
-                    0.5 * (square[i * n + j] + square[j * n + i]) + across * crossing;
-            }
-        }
-    }
-}
-
-/// The y that minimise |g - Aᵀy| over the free components; small where rows depend on each other.
-fn least_squares(rows: &[f64], gradient: &[f64], free: &[bool]) -> Vec<f64> {
-    let n = gradient.len();
-    let m = if n == 0 { 0 } else { rows.len() / n };
-    let dot =
-        |a: &[f64], b: &[f64]| -> f64 { (0..n).filter(|&i| free[i]).map(|i| a[i] * b[i]).sum() };
-    let row = |i: usize| &rows[i * n..(i + 1) * n];
-    let mut matrix = vec![0.0; m * m];
-    for i in 0..m {
-        (0..=i).for_each(|j| matrix[i * m + j] = dot(row(i), row(j)));
-    }
-    let largest = (0..m).map(|i| matrix[i * m + i]).fold(0.0, f64::max);
-    (0..m).for_each(|i| matrix[i * m + i] += 1e-13 * largest + 1e-300);
-    let mut multipliers: Vec<f64> = (0..m).map(|i| dot(row(i), gradient)).collect();
-    match cholesky::factor(&mut matrix, m) {
-        Ok(()) => cholesky::solve(&matrix, m, &mut multipliers),
-        Err(_) => multipliers.fill(0.0),
-    }
-    multipliers
 }
 
 impl Problem for Descent<'_> {

@@ -2,7 +2,8 @@
 
 use super::answer::{Answer, By, Miss};
 use super::determined;
-use super::problem::{Descent, Question, Stage};
+use super::problem::{Descent, Stage};
+use super::question::Question;
 use super::{Goals, Rest};
 use condyle_math::Quat;
 use condyle_model::{CoordinateKind, Model};

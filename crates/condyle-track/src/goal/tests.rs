@@ -2,7 +2,8 @@
 //! against central differences, its Hessian, where residuals vanish and Gauss and Newton's is exact,
 //! against those of its gradient; and the same of rest.
 
-use super::problem::{Descent, Question, Stage};
+use super::problem::{Descent, Stage};
+use super::question::Question;
 use super::{Aim, Anchor, Goal, Goals, Side};
 use crate::target::PostureTarget;
 use crate::target::tests::{Dice, tree};

@@ -4,6 +4,7 @@
 use crate::figure::Draws;
 use condyle::formats::document;
 use condyle::model::component::Law;
+use condyle::posing::nearest_legal;
 use condyle::{Jacobian, Mode, Model, Pose, Program, shipped};
 
 /// What is added to the right side; the left is its mirror image. Numbers are chosen so that some poses
@@ -152,4 +153,50 @@ fn both_sides_have_the_same_rows() {
             assert!((pair[0] - pair[1]).abs() < 1e-9, "{pair:?}");
         }
     }
+}
+
+#[test]
+fn no_legal_pose_found_by_chance_is_nearer() {
+    let model = limited();
+    let program = Program::compile(&model);
+    let mut pose = Pose::new(&program);
+    let mut worst = |stored: &[f64]| {
+        program.evaluate(stored, Mode::Open, &mut pose).unwrap();
+        (0..program.limit_row_len()).map(|row| pose.limit_row(row)).fold(f64::INFINITY, f64::min)
+    };
+    let mut draws = Draws(0xbead);
+    let far =
+        |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
+    let (mut solved, mut tried) = (0, 0);
+    for asked in poses(&model, 12) {
+        let Some(found) = nearest_legal(&model, &asked) else {
+            assert!(worst(&asked) >= -1e-9);
+            continue;
+        };
+        let row = worst(&found);
+        assert!(row > -1e-7, "{row}");
+        solved += 1;
+        let own = far(&found, &asked);
+        // Poses on a ball about the asked one that is as large, and about the found one, ever closer.
+        for k in 0..2000 {
+            let size = own * 0.5f64.powi(k % 12);
+            let from = if k % 2 == 0 { &asked } else { &found };
+            let near: Vec<f64> = model
+                .coordinate_ids()
+                .map(|id| {
+                    let at = model.stored_range(id).start;
+                    model
+                        .coordinate(id)
+                        .range
+                        .nearest(from[at] + size * (2.0 * draws.share() - 1.0))
+                })
+                .collect();
+            if worst(&near) >= 0.0 {
+                tried += 1;
+                let other = far(&near, &asked);
+                assert!(other > own - 1e-5, "{own} {other}: {found:?} {near:?}");
+            }
+        }
+    }
+    assert!(solved > 6 && tried > 500, "{solved} solved, {tried} others tried");
 }
