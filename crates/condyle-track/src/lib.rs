@@ -25,6 +25,7 @@
 //! | [`Trust`] | how far each coordinate of a frame follows from the markers |
 //! | [`Stream`] | frames as they come |
 //! | [`sequence`] | many frames: cut, solve a chunk, stitch |
+//! | [`goal`] | poses by goals: what should be where, nearest to rest |
 //! | [`robust`] | faulty markers: left out, exchanged labels put right |
 //!
 //! ```
