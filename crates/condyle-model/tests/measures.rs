@@ -1,8 +1,8 @@
 //! What is measured between segments, against the transforms of the pose.
 
 use condyle_math::{Affine, EulerOrder, Mat3, Quat, Vec3};
+use condyle_model::component::HalfSpace;
 use condyle_model::component::{AngleNames, Angles, RelativeOrientation, RelativePosition};
-use condyle_model::limit::HalfSpace;
 use condyle_model::{Law, Mode, Model, ModelBuilder, Pose, Program, SegmentId, Signal};
 
 /// A number in -1..1 for each index.

@@ -4,7 +4,8 @@ use condyle_math::Vec3;
 use condyle_model::component::{
     AngleNames, Angles, JointCone, RelativeOrientation, RelativePosition, Swinging,
 };
-use condyle_model::limit::{Cone, ConePoint, Ellipse, HalfSpace, Projection};
+use condyle_model::component::{Ellipse, HalfSpace};
+use condyle_model::limit::{Cone, ConePoint, Projection};
 use condyle_model::{
     CoordinateId, Law, Mode, Model, ModelBuilder, Pose, Program, Range, SegmentId, Signal,
 };

@@ -15,7 +15,9 @@
 //! Singular where the middle angle is at an end of its range (the third is then 0), and where the swing
 //! is a half turn: [`Angles::margin`] is the distance from there. Slopes: by dual numbers along q·exp(δ).
 
-use super::{Contract, Geometry, Kind, Mirrored, Port, PortType, Reflection};
+use super::{
+    Contract, Geometry, Kind, MOST_NUMBERS, Mirrored, Numbers, Port, PortType, Reflection,
+};
 use condyle_math::{EulerOrder, Quat, Scalar, SwingTwist, Vec3};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -44,7 +46,7 @@ impl Angles {
         Kind { name: "angles", ports: &[Port::one("orientation", PortType::Orientation)] };
 
     /// The three angles of an orientation x, y, z, w of length 1, in radians.
-    pub(crate) fn of<S: Scalar>(&self, orientation: [S; 4]) -> [S; 3] {
+    fn of<S: Scalar>(&self, orientation: [S; 4]) -> [S; 3] {
         let mut q = Quat::from(orientation);
         if let Some(at) = self.mirrored {
             // D·R·D turns about -D·v.
@@ -79,6 +81,13 @@ impl Angles {
             }
             AngleNames::SwingTwist(_) => PI - angles[1].hypot(angles[2]),
         }
+    }
+}
+
+impl Numbers for Angles {
+    fn values<S: Scalar>(&self, orientation: [S; MOST_NUMBERS]) -> [S; MOST_NUMBERS] {
+        let [a, b, c] = self.of(orientation);
+        [a, b, c, S::zero()]
     }
 }
 

@@ -17,6 +17,10 @@ impl Combine {
 }
 
 impl Contract for Combine {
+    fn takes(&self) -> Option<usize> {
+        Some(self.function.arity())
+    }
+
     fn outputs(&self) -> (PortType, usize) {
         (PortType::Scalar, 1)
     }

@@ -17,7 +17,9 @@
 //!
 //! Discontinuous for a weight between 0 and 1, where a named motion reaches a half turn.
 
-use super::{Contract, Geometry, Kind, Port, PortType};
+use super::{Contract, Fault, Geometry, Kind, Port, PortType};
+
+use condyle_diagnostics::Severity;
 
 /// The rotation that cancels those of named ancestors: for example an arm that keeps hanging while
 /// the shoulder shrugs.
@@ -38,6 +40,18 @@ impl Compensate {
 }
 
 impl Contract for Compensate {
+    fn faults(&self) -> Vec<Fault> {
+        if (0.0..=1.0).contains(&self.weight) {
+            return vec![];
+        }
+        vec![Fault {
+            severity: Severity::Error,
+            code: "model/weight",
+            said: format!("has the weight {}", self.weight),
+            help: "give a weight from 0 (nothing is undone) to 1 (all is)",
+        }]
+    }
+
     fn geometry(&mut self) -> Vec<Geometry<'_>> {
         vec![]
     }

@@ -25,8 +25,9 @@
 //! Kinks: in posed mode at the boundary. The derivative of moved angles is taken as 0; solvers use
 //! open mode.
 
-use super::{Contract, Geometry, Kind, Mirrored, Port, PortType, Reflection};
+use super::{Contract, Fault, Geometry, Kind, Mirrored, Port, PortType, Reflection};
 use crate::limit::{Cone, ConePoint, Limit, MOST_ROWS, Row};
+use condyle_diagnostics::Severity;
 use condyle_math::{Mat3, Quat, Scalar, Vec3};
 use std::f64::consts::TAU;
 
@@ -252,8 +253,26 @@ impl JointCone {
 }
 
 impl Contract for JointCone {
-    fn limit(&self) -> Option<&dyn Limit> {
-        Some(self)
+    fn faults(&self) -> Vec<Fault> {
+        let twisting = self.cone.twist_at_rest().is_some();
+        if !twisting || !matches!(self.of, Swinging::Directions(_)) {
+            return vec![];
+        }
+        vec![Fault {
+            severity: Severity::Warning,
+            code: "model/cone-twist",
+            said: "has bounds of twist but only two angles".to_owned(),
+            help: "give it a third angle, or omit the bounds",
+        }]
+    }
+
+    /// As many angles as axes.
+    fn takes(&self) -> Option<usize> {
+        match self.of {
+            Swinging::Angles(_) => Some(3),
+            Swinging::Directions(_) => Some(2),
+            Swinging::Orientation => Some(1),
+        }
     }
 
     fn has(&self, port: &Port) -> bool {

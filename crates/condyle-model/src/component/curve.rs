@@ -14,7 +14,8 @@
 //! c′ = 0 or where the tangent is along `up`: there R is built on an arbitrary perpendicular
 //! direction. `condyle check` finds such curves. Generator: by dual numbers.
 
-use super::{Contract, Geometry, Kind, MotionLaw, Port, PortType};
+use super::{Contract, Fault, Geometry, Kind, MotionLaw, Port, PortType};
+use condyle_diagnostics::Severity;
 use condyle_math::function::SimmSpline;
 use condyle_math::{Affine, Lane, Mat3, Scalar, Vec3};
 
@@ -33,6 +34,20 @@ impl Curve {
 }
 
 impl Contract for Curve {
+    fn faults(&self) -> Vec<Fault> {
+        if self.least_heading() >= 1e-3 {
+            return vec![];
+        }
+        vec![Fault {
+            severity: Severity::Warning,
+            code: "model/curve-heading",
+            said: "has a curve with zero velocity or parallel to `up` somewhere, so that its heading is \
+                   undefined there"
+                .to_owned(),
+            help: "give another `up`, or a curve whose points differ",
+        }]
+    }
+
     fn geometry(&mut self) -> Vec<Geometry<'_>> {
         let mut parts = vec![Geometry::Path(&mut self.path)];
         if let Some(Heading { forward, up }) = &mut self.heading {

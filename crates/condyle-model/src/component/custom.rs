@@ -61,8 +61,10 @@ impl PartialEq for Custom {
 }
 
 impl Custom {
-    pub(crate) const KIND: Kind =
-        Kind { name: "custom", ports: &[Port::list("inputs", PortType::Scalar)] };
+    pub(crate) const KIND: Kind = Kind {
+        name: "custom",
+        ports: &[Port::list("inputs", PortType::Scalar).at_most(MOST_LAW_INPUTS)],
+    };
 }
 
 impl Contract for Custom {

@@ -54,6 +54,7 @@ mod ellipsoid;
 mod geometry;
 mod half_space;
 mod map;
+mod numbers;
 mod pivot;
 mod place;
 mod port;
@@ -76,7 +77,9 @@ pub use contact::{Contact, ContactError, ContactPair, Glide, Gliding};
 pub use curve::{Curve, Heading};
 pub use custom::{Custom, ErasedLaw, LawDual, Parameters, Registry};
 pub use depend::Depend;
+pub use ellipse::Ellipse;
 pub use ellipsoid::{Ellipsoid, SurfaceAxis};
+pub use half_space::HalfSpace;
 pub use map::Map;
 pub use pivot::{Centre, Pivot, PivotError};
 pub use place::Place;
@@ -91,9 +94,11 @@ pub use shear::Shear;
 pub use translate::Translate;
 
 use geometry::Geometry;
+pub(crate) use numbers::{ErasedNumbers, MOST_NUMBERS, NumberDual, Numbers};
 
-use crate::limit::{Ellipse, HalfSpace, Limit};
+use crate::limit::Limit;
 use crate::position::{JointSetId, SegmentId};
+use condyle_diagnostics::Severity;
 use condyle_math::{Affine, Scalar, Vec3};
 
 /// A component of a joint set: a law, and where its inputs come from.
@@ -162,9 +167,15 @@ pub(crate) trait Contract {
         false
     }
 
-    /// The limit of all its inputs together, which its outputs keep.
-    fn limit(&self) -> Option<&dyn Limit> {
+    /// How many inputs it takes, where its ports do not say so.
+    fn takes(&self) -> Option<usize> {
         None
+    }
+
+    /// What is wrong with its parameters, as a code, what is said of the component, and what would be
+    /// right.
+    fn faults(&self) -> Vec<Fault> {
+        vec![]
     }
 
     /// Multiplies the lengths that it holds: by the factor of its joint, which is that of the parent of
@@ -184,81 +195,142 @@ pub(crate) trait Contract {
     }
 }
 
+/// The laws that the compiler treats alike; within a family it names each.
+pub(crate) enum Family<'a> {
+    /// Computes numbers, each in its own way.
+    Scalars(Scalars<'a>),
+    /// A smooth function from few numbers to few.
+    Numbers(&'a dyn ErasedNumbers),
+    /// Passes numbers, within a limit in posed mode.
+    Limit(&'a dyn Limit),
+    /// Computes a transform.
+    Motion(Motion<'a>),
+}
+
 macro_rules! laws {
-    ($($(#[doc = $doc:literal])* $variant:ident($type:ident),)*) => {
+    (
+        scalars { $($(#[doc = $s_doc:literal])* $scalar:ident($s:ident),)* }
+        numbers { $($(#[doc = $n_doc:literal])* $number:ident($n:ident),)* }
+        limits { $($(#[doc = $l_doc:literal])* $limit:ident($l:ident),)* }
+        motions { $($(#[doc = $m_doc:literal])* $motion:ident($m:ident),)* }
+    ) => {
         /// What a component computes: one of the laws, with its parameters.
         #[derive(Clone, Debug, PartialEq)]
         pub enum Law {
-            $($(#[doc = $doc])* $variant($type),)*
+            $($(#[doc = $s_doc])* $scalar($s),)*
+            $($(#[doc = $n_doc])* $number($n),)*
+            $($(#[doc = $l_doc])* $limit($l),)*
+            $($(#[doc = $m_doc])* $motion($m),)*
         }
+
+        /// The laws that compute numbers, each in its own way.
+        #[allow(dead_code, reason = "a law without parameters has nothing to read")]
+        pub(crate) enum Scalars<'a> { $($scalar(&'a $s),)* }
+
+        /// The laws that compute a transform.
+        #[allow(dead_code, reason = "a law without parameters has nothing to read")]
+        pub(crate) enum Motion<'a> { $($motion(&'a $m),)* }
 
         impl Law {
             /// All kinds of laws.
-            pub const KINDS: &[Kind] = &[$($type::KIND,)*];
+            pub const KINDS: &[Kind] = &[$($s::KIND,)* $($n::KIND,)* $($l::KIND,)* $($m::KIND,)*];
 
             /// Its kind: its name and all ports that such a law can have.
             pub fn kind(&self) -> &'static Kind {
-                match self { $(Self::$variant(_) => const { &$type::KIND },)* }
+                match self {
+                    $(Self::$scalar(_) => const { &$s::KIND },)*
+                    $(Self::$number(_) => const { &$n::KIND },)*
+                    $(Self::$limit(_) => const { &$l::KIND },)*
+                    $(Self::$motion(_) => const { &$m::KIND },)*
+                }
+            }
+
+            /// Its family.
+            pub(crate) fn family(&self) -> Family<'_> {
+                match self {
+                    $(Self::$scalar(law) => Family::Scalars(Scalars::$scalar(law)),)*
+                    $(Self::$number(law) => Family::Numbers(law),)*
+                    $(Self::$limit(law) => Family::Limit(law),)*
+                    $(Self::$motion(law) => Family::Motion(Motion::$motion(law)),)*
+                }
             }
 
             fn contract(&self) -> &dyn Contract {
-                match self { $(Self::$variant(law) => law,)* }
+                match self {
+                    $(Self::$scalar(law) => law,)*
+                    $(Self::$number(law) => law,)*
+                    $(Self::$limit(law) => law,)*
+                    $(Self::$motion(law) => law,)*
+                }
             }
 
             fn contract_mut(&mut self) -> &mut dyn Contract {
-                match self { $(Self::$variant(law) => law,)* }
+                match self {
+                    $(Self::$scalar(law) => law,)*
+                    $(Self::$number(law) => law,)*
+                    $(Self::$limit(law) => law,)*
+                    $(Self::$motion(law) => law,)*
+                }
             }
         }
     };
 }
 
 laws! {
-    /// Scalar to scalars.
-    Map(Map),
-    /// Scalars to scalar.
-    Combine(Combine),
-    /// A scalar clamped to bounds that another one sets.
-    Depend(Depend),
-    /// A ball joint limited by a cone.
-    Cone(JointCone),
-    /// Two scalars limited by an ellipse.
-    Ellipse(Ellipse),
-    /// Scalars of which a sum is limited.
-    HalfSpace(HalfSpace),
-    /// The orientation of a segment in another.
-    RelativeOrientation(RelativeOrientation),
-    /// The position of a point of a segment in another.
-    RelativePosition(RelativePosition),
-    /// An orientation to three angles.
-    Angles(Angles),
-    /// Contact of a segment with an ellipsoid.
-    Contact(Contact),
-    /// Rotation about a fixed axis.
-    Rotate(Rotate),
-    /// Rotation about an axis whose centre moves.
-    Pivot(Pivot),
-    /// Translation along a fixed axis.
-    Translate(Translate),
-    /// Rotation by an orientation.
-    Ball(Ball),
-    /// A fixed transform.
-    Place(Place),
-    /// Gliding on an ellipsoid.
-    Ellipsoid(Ellipsoid),
-    /// Bending along an arc.
-    ConstantCurvature(ConstantCurvature),
-    /// The rotation that cancels those of ancestors.
-    Compensate(Compensate),
-    /// A scale.
-    Scale(Scale),
-    /// A shear.
-    Shear(Shear),
-    /// Motion along a curve.
-    Curve(Curve),
-    /// A user's law.
-    Custom(Custom),
-    /// Product of transforms.
-    Product(Product),
+    scalars {
+        /// Scalar to scalars.
+        Map(Map),
+        /// Scalars to scalar.
+        Combine(Combine),
+        /// A scalar clamped to bounds that another one sets.
+        Depend(Depend),
+        /// The orientation of a segment in another.
+        RelativeOrientation(RelativeOrientation),
+        /// The position of a point of a segment in another.
+        RelativePosition(RelativePosition),
+    }
+    numbers {
+        /// An orientation to three angles.
+        Angles(Angles),
+    }
+    limits {
+        /// A ball joint limited by a cone.
+        Cone(JointCone),
+        /// Two scalars limited by an ellipse.
+        Ellipse(Ellipse),
+        /// Scalars of which a sum is limited.
+        HalfSpace(HalfSpace),
+    }
+    motions {
+        /// Contact of a segment with an ellipsoid.
+        Contact(Contact),
+        /// Rotation about a fixed axis.
+        Rotate(Rotate),
+        /// Rotation about an axis whose centre moves.
+        Pivot(Pivot),
+        /// Translation along a fixed axis.
+        Translate(Translate),
+        /// Rotation by an orientation.
+        Ball(Ball),
+        /// A fixed transform.
+        Place(Place),
+        /// Gliding on an ellipsoid.
+        Ellipsoid(Ellipsoid),
+        /// Bending along an arc.
+        ConstantCurvature(ConstantCurvature),
+        /// The rotation that cancels those of ancestors.
+        Compensate(Compensate),
+        /// A scale.
+        Scale(Scale),
+        /// A shear.
+        Shear(Shear),
+        /// Motion along a curve.
+        Curve(Curve),
+        /// A user's law.
+        Custom(Custom),
+        /// Product of transforms.
+        Product(Product),
+    }
 }
 
 impl Law {
@@ -289,6 +361,24 @@ impl Law {
         self.contract().outputs()
     }
 
+    /// The function of few numbers that it is, if it is one.
+    pub(crate) fn numbers(&self) -> Option<&dyn ErasedNumbers> {
+        match self.family() {
+            Family::Numbers(law) => Some(law),
+            Family::Scalars(_) | Family::Limit(_) | Family::Motion(_) => None,
+        }
+    }
+
+    /// How many inputs it takes, where its ports do not say so.
+    pub(crate) fn takes(&self) -> Option<usize> {
+        self.contract().takes()
+    }
+
+    /// What is wrong with its parameters.
+    pub(crate) fn faults(&self) -> Vec<Fault> {
+        self.contract().faults()
+    }
+
     /// Whether its transform stretches or shears what it moves, by itself.
     pub(crate) fn deforms(&self) -> bool {
         self.contract().deforms()
@@ -296,7 +386,10 @@ impl Law {
 
     /// The limit of all its inputs together, which its outputs keep.
     pub fn limit(&self) -> Option<&dyn Limit> {
-        self.contract().limit()
+        match self.family() {
+            Family::Limit(limit) => Some(limit),
+            Family::Scalars(_) | Family::Numbers(_) | Family::Motion(_) => None,
+        }
     }
 
     /// The directions among its parameters, by their names in files.
@@ -320,6 +413,15 @@ impl Law {
     pub fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {
         self.contract_mut().mirror(at)
     }
+}
+
+/// A fault of a law's parameters: its severity and code, what is said of the component, what would be right.
+pub(crate) struct Fault {
+    pub severity: Severity,
+    pub code: &'static str,
+    /// The rest of a sentence that begins with the component.
+    pub said: String,
+    pub help: &'static str,
 }
 
 /// A smooth transform-valued function of a few scalars, generic over the scalar type.

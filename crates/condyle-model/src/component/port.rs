@@ -73,23 +73,30 @@ pub struct Port {
     pub takes: PortType,
     /// How many of them.
     pub arity: Arity,
+    /// The longest list that it takes.
+    pub most: usize,
 }
 
 impl Port {
     pub(crate) const fn one(name: &'static str, takes: PortType) -> Self {
-        Self { name, takes, arity: Arity::One }
+        Self { name, takes, arity: Arity::One, most: 1 }
     }
 
     pub(crate) const fn perhaps(name: &'static str, takes: PortType) -> Self {
-        Self { name, takes, arity: Arity::Perhaps }
+        Self { name, takes, arity: Arity::Perhaps, most: 1 }
     }
 
     pub(crate) const fn list(name: &'static str, takes: PortType) -> Self {
-        Self { name, takes, arity: Arity::List }
+        Self { name, takes, arity: Arity::List, most: usize::MAX }
     }
 
     pub(crate) const fn perhaps_list(name: &'static str, takes: PortType) -> Self {
-        Self { name, takes, arity: Arity::PerhapsList }
+        Self { name, takes, arity: Arity::PerhapsList, most: usize::MAX }
+    }
+
+    /// The same port for lists of at most so many.
+    pub(crate) const fn at_most(self, most: usize) -> Self {
+        Self { most, ..self }
     }
 
     /// Whether it takes a list; a law has one such port at most.

@@ -5,7 +5,8 @@
 //! transpose, which transforms normals, is I - s·n·aᵀ. Generator: a·nᵀ, which is not rigid. Kinks:
 //! amounts are clamped to ±10⁶.
 
-use super::{Contract, Geometry, Kind, Port, PortType};
+use super::{Contract, Fault, Geometry, Kind, Port, PortType};
+use condyle_diagnostics::Severity;
 use condyle_math::{Mat3, Scalar, Vec3};
 
 /// A shear by one amount: the displacement per unit of distance from the plane, dimensionless; 0 is the
@@ -24,6 +25,18 @@ impl Shear {
 }
 
 impl Contract for Shear {
+    fn faults(&self) -> Vec<Fault> {
+        if self.along.normalized().dot(self.across.normalized()).abs() <= 1e-6 {
+            return vec![];
+        }
+        vec![Fault {
+            severity: Severity::Error,
+            code: "model/shear-axes",
+            said: "has two directions that are not perpendicular".to_owned(),
+            help: "layers slide at a right angle to the direction in which they are stacked",
+        }]
+    }
+
     fn deforms(&self) -> bool {
         true
     }

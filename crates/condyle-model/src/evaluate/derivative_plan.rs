@@ -10,6 +10,7 @@
 #[cfg(doc)]
 use super::instruction::Step;
 use super::instruction::{Code, Driver, Frame, Instruction, Number};
+use crate::component::MOST_NUMBERS;
 use crate::limit::MOST_LIMITED;
 use std::ops::Range;
 use std::slice::Iter;
@@ -185,12 +186,14 @@ pub(super) fn plan(
                     scalars[output.index()] = plan.measured(moving, k, n);
                 }
             }
-            Instruction::Angles { angles } => {
-                let call = &code.angles[*angles as usize];
-                let tangent = |k| scalars[Number(call.input.0 + k).index()].clone();
-                let inputs = [0, 1, 2].map(tangent);
+            Instruction::Numbers { numbers } => {
+                let call = &code.numbers[*numbers as usize];
+                // An orientation has three tangents, in its first three registers.
+                let count = if call.orientation { 3 } else { call.inputs.len() };
+                let read = |r: &Number| scalars[r.index()].clone();
+                let inputs: Vec<_> = call.inputs[..count].iter().map(read).collect();
                 for (k, output) in call.outputs.iter().enumerate() {
-                    scalars[output.index()] = plan.scalar(3 * k, &inputs);
+                    scalars[output.index()] = plan.scalar(MOST_NUMBERS * k, &inputs);
                 }
             }
             Instruction::Contact { contact } => {

@@ -4,6 +4,7 @@ use super::chain::{Silent, run_chain};
 use super::instruction::Instruction;
 use super::pose::Pose;
 use super::program::{Mode, Program, SizeMismatch};
+use crate::component::MOST_NUMBERS;
 use crate::limit::MOST_LIMITED;
 use condyle_math::{Affine, Lane, Quat, Scalar, Vec3};
 
@@ -198,11 +199,15 @@ impl Program {
                     scalars[output.index()] = finite(place.dot(along.cast()));
                 }
             }
-            Instruction::Angles { angles } => {
-                let call = &self.code.angles[angles as usize];
-                let found = call.law.of(call.input.quaternion(scalars));
-                for (output, angle) in call.outputs.into_iter().zip(found) {
-                    scalars[output.index()] = finite(angle);
+            Instruction::Numbers { numbers } => {
+                let call = &self.code.numbers[numbers as usize];
+                let Some(law) = call.law.numbers() else { return };
+                let mut inputs = [S::zero(); MOST_NUMBERS];
+                for (input, register) in inputs.iter_mut().zip(&call.inputs) {
+                    *input = scalars[register.index()];
+                }
+                for (output, value) in call.outputs.iter().zip(law.values(inputs)) {
+                    scalars[output.index()] = finite(value);
                 }
             }
             Instruction::Contact { .. }

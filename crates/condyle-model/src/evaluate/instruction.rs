@@ -1,7 +1,7 @@
 //! The instructions of a program, the steps of chains, and the tables that they refer to.
 
 use crate::component::{
-    Along, Angles, ConstantCurvature, Curve, Custom, Ellipsoid, Gliding, Law, MotionLaw, Pivot,
+    Along, ConstantCurvature, Curve, Custom, Ellipsoid, Gliding, Law, MotionLaw, Pivot,
 };
 use crate::position::ComponentId;
 use condyle_math::function::{Function, FunctionOfSeveral};
@@ -180,8 +180,8 @@ pub(super) enum Instruction {
     Orientation { frame: Frame, output: Number },
     /// Scalars: where a point of an earlier transform is along directions.
     Position { position: u32 },
-    /// Three angles of an orientation.
-    Angles { angles: u32 },
+    /// A smooth function of few numbers.
+    Numbers { numbers: u32 },
     /// The two rotations that bring a segment into contact with an ellipsoid.
     Contact { contact: u32 },
     /// `output = base · shift · steps`.
@@ -231,10 +231,10 @@ impl Instruction {
                 registers.read_frames.push(call.frame);
                 registers.written.extend(&call.outputs);
             }
-            Self::Angles { angles } => {
-                let call = &code.angles[angles as usize];
-                registers.read.push(call.input);
-                registers.written.extend(call.outputs);
+            Self::Numbers { numbers } => {
+                let call = &code.numbers[numbers as usize];
+                registers.read.extend(&call.inputs);
+                registers.written.extend(&call.outputs);
             }
             Self::Contact { contact } => {
                 let call = &code.contacts[contact as usize];
@@ -294,13 +294,14 @@ pub(super) struct PositionCall {
     pub outputs: Vec<Number>,
 }
 
-/// Angles with their registers.
+/// A smooth function of few numbers with its registers.
 #[derive(Clone, Debug)]
-pub(super) struct AnglesCall {
-    pub law: Angles,
-    /// The first of four.
-    pub input: Number,
-    pub outputs: [Number; 3],
+pub(super) struct NumbersCall {
+    pub law: Law,
+    /// Whether its inputs are the four numbers of an orientation.
+    pub orientation: bool,
+    pub inputs: Vec<Number>,
+    pub outputs: Vec<Number>,
 }
 
 /// A contact with its registers.
@@ -352,7 +353,7 @@ pub(super) struct Code {
     pub rows: Vec<Number>,
     pub limits: Vec<LimitCall>,
     pub positions: Vec<PositionCall>,
-    pub angles: Vec<AnglesCall>,
+    pub numbers: Vec<NumbersCall>,
     pub contacts: Vec<ContactCall>,
     /// The model's root frame, the parent of the root segments.
     pub base: Frame,

@@ -8,9 +8,10 @@ use super::instruction::Instruction;
 use super::pose::Pose;
 use super::program::{Mode, Program, SizeMismatch};
 use super::tape::Tape;
+use crate::component::{MOST_NUMBERS, NumberDual};
 use crate::limit::MOST_LIMITED;
 use crate::model::SegmentId;
-use condyle_math::{Affine, Dual, Mat3, Quat, Scalar, Twist, Vec3};
+use condyle_math::{Affine, Mat3, Quat, Scalar, Twist, Vec3};
 
 /// The generators of one evaluation, expressed in the world.
 ///
@@ -270,20 +271,29 @@ impl Program {
                     add(term, call.along[k].dot(velocity));
                 }
             }
-            Instruction::Angles { angles } => {
-                let call = &self.code.angles[angles as usize];
-                let q: [f64; 4] = call.input.quaternion(&pose.scalars);
-                // q·exp(δ) is q·(δ/2, 1) to first order.
-                let half = |i| Dual::<3>::variable(0.0, i).scale(0.5);
-                let step = Quat { x: half(0), y: half(1), z: half(2), w: Dual::constant(1.0) };
-                let found = call.law.of((Quat::from(q).cast() * step).to_array());
-                for (output, angle) in call.outputs.into_iter().zip(found) {
-                    pose.scalars[output.index()] = finite(angle.value);
+            Instruction::Numbers { numbers } => {
+                let call = &self.code.numbers[numbers as usize];
+                let Some(law) = call.law.numbers() else { return };
+                let mut inputs = [NumberDual::constant(0.0); MOST_NUMBERS];
+                for (i, register) in call.inputs.iter().enumerate() {
+                    inputs[i] = NumberDual::variable(pose.scalars[register.index()], i);
                 }
-                // Position 3·output + k is its slope along the tangent k.
+                if call.orientation {
+                    // Along its tangents: q·exp(δ) is q·(δ/2, 1) to first order.
+                    let half = |i| NumberDual::variable(0.0, i).scale(0.5);
+                    let (x, y, z) = (half(0), half(1), half(2));
+                    let step = Quat { x, y, z, w: NumberDual::constant(1.0) };
+                    let q = inputs.map(|input| NumberDual::constant(input.value));
+                    inputs = (Quat::from(q) * step).to_array();
+                }
+                let found = law.dual_at(inputs);
+                for (output, value) in call.outputs.iter().zip(found) {
+                    pose.scalars[output.index()] = finite(value.value);
+                }
+                // Position n·output + k is its slope along the input, or the tangent, k.
                 for term in terms {
-                    let (output, k) = (term.slope as usize / 3, term.slope as usize % 3);
-                    add(term, found[output].partials[k]);
+                    let slope = term.slope as usize;
+                    add(term, found[slope / MOST_NUMBERS].partials[slope % MOST_NUMBERS]);
                 }
             }
             Instruction::Contact { .. }

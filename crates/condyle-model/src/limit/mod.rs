@@ -13,17 +13,14 @@
 //! unchanged, and the rows are inequalities for a solver. A limit on what is measured between segments
 //! gives its rows in both modes and moves nothing: it can act on joints through which it is measured.
 //!
-//! A [`Range`] limits one coordinate, a [`Cone`] swing and twist of a ball joint together, an [`Ellipse`]
-//! two numbers, and a [`HalfSpace`] a sum of several.
+//! A [`Range`] limits one coordinate, a [`Cone`] swing and twist of a ball joint together. The limits that
+//! are laws of components are with them: [`JointCone`](crate::component::JointCone),
+//! [`Ellipse`](crate::component::Ellipse), [`HalfSpace`](crate::component::HalfSpace).
 
 mod cone;
-mod ellipse;
-mod half_space;
 mod range;
 
 pub use cone::{Cone, ConeError, ConePoint, Legal, Projected, Projection};
-pub use ellipse::Ellipse;
-pub use half_space::HalfSpace;
 pub use range::Range;
 
 /// The most numbers that one limit bounds together.

@@ -12,7 +12,8 @@ use condyle_model::component::{
     Reflection, Registry, RelativeOrientation, RelativePosition, Scale, Shear, SurfaceAxis,
     Swinging,
 };
-use condyle_model::limit::{Cone, ConePoint, Ellipse, HalfSpace, Projection};
+use condyle_model::component::{Ellipse, HalfSpace};
+use condyle_model::limit::{Cone, ConePoint, Projection};
 use condyle_model::model::{Closure, Condition};
 use condyle_model::{
     CoordinateId, CoordinateKind, JointSetId, Model, ModelBuilder, PostureTerm, Range, SegmentId,

@@ -27,8 +27,7 @@ const NEAR: f64 = 0.25 * REST_ANGLE;
 ///
 /// ```
 /// use condyle_math::Vec3;
-/// use condyle_model::component::RelativePosition;
-/// use condyle_model::limit::HalfSpace;
+/// use condyle_model::component::{HalfSpace, RelativePosition};
 /// use condyle_model::{Law, ModelBuilder};
 /// use condyle_track::goal::nearest_legal;
 ///

@@ -66,7 +66,7 @@ impl Contact {
             Port::one("segment", PortType::Joint),
             Port::one("surface", PortType::Segment),
             Port::perhaps("before", PortType::Transform),
-            Port::perhaps_list("drivers", PortType::Scalar),
+            Port::perhaps_list("drivers", PortType::Scalar).at_most(2),
         ],
     };
 }

@@ -4,7 +4,7 @@ use super::super::instruction::{
     AnyLaw, ContactCall, Frame, Instruction, LawCall, Number, Step, Turn,
 };
 use super::{Compiler, Operand};
-use crate::component::{Component, Contact, Law, Signal, shear};
+use crate::component::{Component, Contact, Family, Motion, Signal, shear};
 use crate::model::{ComponentId, SegmentId};
 use condyle_math::{Affine, Mat3, Vec3};
 
@@ -162,10 +162,11 @@ impl Compiler<'_> {
             at_root = false;
             let component = &self.model.components[id.index()];
             let inputs = &component.inputs[..];
-            match &component.law {
-                Law::Product(_) => stack.extend(inputs.iter().rev()),
-                Law::Place(place) => self.fixed(place.child_in_parent, steps),
-                Law::Rotate(rotate) => match self.scalar(inputs[0]) {
+            let Family::Motion(law) = component.law.family() else { continue };
+            match law {
+                Motion::Product(_) => stack.extend(inputs.iter().rev()),
+                Motion::Place(place) => self.fixed(place.child_in_parent, steps),
+                Motion::Rotate(rotate) => match self.scalar(inputs[0]) {
                     Operand::Constant(angle) => {
                         let turn = Mat3::rotation_about(rotate.axis, angle.sin_cos());
                         self.fixed(Affine::from_rotation(turn), steps);
@@ -175,7 +176,7 @@ impl Compiler<'_> {
                         steps.push(turn);
                     }
                 },
-                Law::Translate(translate) => match self.scalar(inputs[0]) {
+                Motion::Translate(translate) => match self.scalar(inputs[0]) {
                     Operand::Constant(distance) => {
                         self.fixed(Affine::from_translation(translate.axis * distance), steps);
                     }
@@ -184,12 +185,12 @@ impl Compiler<'_> {
                         merge_slides(steps);
                     }
                 },
-                Law::Ball(_) => {
+                Motion::Ball(_) => {
                     let register = self.scalar(inputs[0]);
                     let register = self.register(register);
                     steps.push(Step::Ball(register));
                 }
-                Law::Pivot(law) => {
+                Motion::Pivot(law) => {
                     let angle = self.scalar(inputs[0]);
                     if let (Some(centre), Operand::Register(angle)) = (law.fixed_centre(), angle) {
                         // One centre: a rotation between two shifts, cheaper than the law.
@@ -201,11 +202,11 @@ impl Compiler<'_> {
                     }
                     self.law(AnyLaw::Pivot(law.clone()), inputs, steps);
                 }
-                Law::Ellipsoid(law) => self.law(AnyLaw::Ellipsoid(law.clone()), inputs, steps),
-                Law::ConstantCurvature(law) => {
+                Motion::Ellipsoid(law) => self.law(AnyLaw::Ellipsoid(law.clone()), inputs, steps),
+                Motion::ConstantCurvature(law) => {
                     self.law(AnyLaw::ConstantCurvature(law.clone()), inputs, steps);
                 }
-                Law::Scale(scale) => match self.scalar(inputs[0]) {
+                Motion::Scale(scale) => match self.scalar(inputs[0]) {
                     Operand::Constant(factor) => {
                         let linear = scale.along.matrix(factor);
                         self.fixed(Affine::new(linear, Vec3::ZERO), steps);
@@ -216,7 +217,7 @@ impl Compiler<'_> {
                         steps.push(Step::Stretch { along, factor });
                     }
                 },
-                Law::Shear(shear) => match self.scalar(inputs[0]) {
+                Motion::Shear(shear) => match self.scalar(inputs[0]) {
                     Operand::Constant(amount) => {
                         let linear = shear::matrix(shear.along, shear.across, amount);
                         self.fixed(Affine::new(linear, Vec3::ZERO), steps);
@@ -227,9 +228,9 @@ impl Compiler<'_> {
                         steps.push(Step::Shear { directions, amount });
                     }
                 },
-                Law::Curve(law) => self.law(AnyLaw::Curve(law.clone()), inputs, steps),
-                Law::Custom(law) => self.law(AnyLaw::Custom(law.clone()), inputs, steps),
-                Law::Compensate(_) => {
+                Motion::Curve(law) => self.law(AnyLaw::Curve(law.clone()), inputs, steps),
+                Motion::Custom(law) => self.law(AnyLaw::Custom(law.clone()), inputs, steps),
+                Motion::Compensate(_) => {
                     // F⁻¹·A⁻¹·A′·F, with F the joint frame in the parent.
                     let Some((is, should)) = self.compensations[id.index()] else { continue };
                     let Some(moved) = component.segments_at("segment").next() else { continue };
@@ -239,19 +240,10 @@ impl Compiler<'_> {
                     steps.push(Step::Power { of: should, exponent: 1.0 });
                     self.fixed(Affine::from_rotation(joint), steps);
                 }
-                Law::Contact(_) => {
+                Motion::Contact(_) => {
                     let turns = self.contacts[id.index()].map(Step::Transform);
                     steps.extend(turns);
                 }
-                Law::Map(_)
-                | Law::Combine(_)
-                | Law::Depend(_)
-                | Law::Cone(_)
-                | Law::Ellipse(_)
-                | Law::HalfSpace(_)
-                | Law::RelativeOrientation(_)
-                | Law::RelativePosition(_)
-                | Law::Angles(_) => {}
             }
         }
     }

@@ -123,7 +123,7 @@ fn compile(model: &Model, wanted: &[bool], moving: &[bool]) -> Program {
                 rows: vec![],
                 limits: vec![],
                 positions: vec![],
-                angles: vec![],
+                numbers: vec![],
                 contacts: vec![],
                 base: Frame::new(model.segments.len()),
                 identity: Frame::new(model.segments.len() + 1),

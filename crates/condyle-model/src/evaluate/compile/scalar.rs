@@ -1,10 +1,10 @@
 //! Compilation of scalar components to scalar instructions.
 
 use super::super::instruction::{
-    AnglesCall, CombineCall, Instruction, LimitCall, Number, PositionCall,
+    CombineCall, Instruction, LimitCall, Number, NumbersCall, PositionCall,
 };
 use super::{Compiler, Operand};
-use crate::component::{Component, Depend, Law, PortType, Signal};
+use crate::component::{Component, Depend, Family, Law, Motion, PortType, Scalars, Signal};
 use crate::limit::Limit;
 use crate::model::{ComponentId, CoordinateId, Node};
 use condyle_math::function::FunctionOfSeveral;
@@ -78,8 +78,31 @@ impl Compiler<'_> {
     pub(super) fn component(&mut self, id: ComponentId) {
         let component = &self.model.components[id.index()];
         let first_row = self.program.code.rows.len();
-        match &component.law {
-            Law::Map(map) => {
+        match component.law.family() {
+            Family::Scalars(law) => self.scalars(id, component, law),
+            Family::Numbers(_) => self.numbers(id, component),
+            Family::Limit(_) => {
+                let results = self.limit(id, component);
+                self.outputs[id.index()].extend(results);
+            }
+            Family::Motion(law) => {
+                if let Motion::Compensate(law) = law {
+                    self.compensations[id.index()] = Some(self.paths(component, law.weight));
+                }
+                if let Motion::Contact(contact) = law {
+                    self.contacts[id.index()] = Some(self.contact(id, component, contact));
+                }
+                self.share(id);
+            }
+        }
+        if self.measured[id.index()] || matches!(component.law, Law::Contact(_)) {
+            self.program.measured_rows.extend(first_row..self.program.code.rows.len());
+        }
+    }
+
+    fn scalars(&mut self, id: ComponentId, component: &Component, law: Scalars<'_>) {
+        match law {
+            Scalars::Map(map) => {
                 let input = self.scalar(component.inputs[0]);
                 for function in &map.functions {
                     let value = function.as_constant();
@@ -99,27 +122,23 @@ impl Compiler<'_> {
                     self.outputs[id.index()].push(result);
                 }
             }
-            Law::Combine(combine) => {
+            Scalars::Combine(combine) => {
                 let inputs: Vec<Operand> =
                     component.inputs.iter().map(|&s| self.scalar(s)).collect();
                 let result = self.combine(&combine.function, &inputs);
                 self.outputs[id.index()].push(result);
             }
-            Law::Depend(depend) => {
+            Scalars::Depend(depend) => {
                 let result = self.depend(id, depend, component.inputs[0], component.inputs[1]);
                 self.outputs[id.index()].push(result);
             }
-            Law::Cone(_) | Law::Ellipse(_) | Law::HalfSpace(_) => {
-                let results = self.limit(id, component);
-                self.outputs[id.index()].extend(results);
-            }
-            Law::RelativeOrientation(_) => {
+            Scalars::RelativeOrientation(_) => {
                 let frame = self.relative(component);
                 let output = self.new_orientation();
                 self.program.code.instructions.push(Instruction::Orientation { frame, output });
                 self.outputs[id.index()].push(Operand::Register(output));
             }
-            Law::RelativePosition(law) => {
+            Scalars::RelativePosition(law) => {
                 let frame = self.relative(component);
                 let outputs: Vec<Number> = law.along.iter().map(|_| self.new_scalar()).collect();
                 self.outputs[id.index()].extend(outputs.iter().copied().map(Operand::Register));
@@ -129,39 +148,26 @@ impl Compiler<'_> {
                 let position = code.positions.len() as u32 - 1;
                 code.instructions.push(Instruction::Position { position });
             }
-            Law::Angles(law) => {
-                let input = self.scalar(component.inputs[0]);
-                let input = self.register(input);
-                let outputs = [(); 3].map(|()| self.new_scalar());
-                self.outputs[id.index()].extend(outputs.map(Operand::Register));
-                self.program.code.angles.push(AnglesCall { law: *law, input, outputs });
-                let angles = self.program.code.angles.len() as u32 - 1;
-                self.program.code.instructions.push(Instruction::Angles { angles });
-            }
-            Law::Compensate(law) => {
-                self.compensations[id.index()] = Some(self.paths(component, law.weight));
-                self.share(id);
-            }
-            Law::Contact(contact) => {
-                self.contacts[id.index()] = Some(self.contact(id, component, contact));
-                self.share(id);
-            }
-            Law::Rotate(_)
-            | Law::Pivot(_)
-            | Law::Translate(_)
-            | Law::Ball(_)
-            | Law::Place(_)
-            | Law::Ellipsoid(_)
-            | Law::ConstantCurvature(_)
-            | Law::Scale(_)
-            | Law::Shear(_)
-            | Law::Curve(_)
-            | Law::Custom(_)
-            | Law::Product(_) => self.share(id),
         }
-        if self.measured[id.index()] || matches!(component.law, Law::Contact(_)) {
-            self.program.measured_rows.extend(first_row..self.program.code.rows.len());
+    }
+
+    /// Compiles a smooth function of few numbers.
+    fn numbers(&mut self, id: ComponentId, component: &Component) {
+        let mut inputs = vec![];
+        let mut orientation = false;
+        for (port, source) in component.ports() {
+            let scalar = self.scalar(source);
+            let first = self.register(scalar);
+            orientation |= port.takes == PortType::Orientation;
+            inputs.extend((0..if orientation { 4 } else { 1 }).map(|k| Number(first.0 + k)));
         }
+        let count = component.law.outputs().1;
+        let outputs: Vec<Number> = (0..count).map(|_| self.new_scalar()).collect();
+        self.outputs[id.index()].extend(outputs.iter().copied().map(Operand::Register));
+        let law = component.law.clone();
+        self.program.code.numbers.push(NumbersCall { law, orientation, inputs, outputs });
+        let numbers = self.program.code.numbers.len() as u32 - 1;
+        self.program.code.instructions.push(Instruction::Numbers { numbers });
     }
 
     /// Computes a transform with several readers once, as a chain of its own.

@@ -1,9 +1,7 @@
 //! Errors of components.
 
 use super::{AXIS_LENGTH, finding, source_type};
-use crate::component::{
-    Component, Curve, JointCone, Law, MOST_LAW_INPUTS, PortType, Shear, Signal, Swinging,
-};
+use crate::component::{Component, Fault, Law, PortType, Signal};
 use crate::model::{Condition, Model, Node, dependency_order};
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_math::Vec3;
@@ -51,51 +49,17 @@ pub(super) fn check_components(model: &Model, findings: &mut Vec<Diagnostic>) {
         for (name, axis) in component.law.clone().directions() {
             check_axis(&place, name, *axis, findings);
         }
-        let inputs = component.inputs.len();
-        match &component.law {
-            Law::Compensate(c) => {
-                check_weight(&place, c.weight, findings);
-                check_ancestors(model, &place, component, "ancestors", findings);
-                check_rigid(model, &place, component, &deforming, findings);
-            }
-            Law::Contact(_) => {
-                check_ancestors(model, &place, component, "surface", findings);
-                check_rigid(model, &place, component, &deforming, findings);
-                let drivers = component.at("drivers").len();
-                if drivers > 2 {
-                    let message = format!("{place} has {drivers} drivers");
-                    let help = "blend its pairs over at most two";
-                    findings.push(place.error("model/arity", message, help));
-                }
-            }
-            Law::Combine(c) => check_arity(&place, inputs, c.function.arity(), findings),
-            Law::Custom(_) if inputs > MOST_LAW_INPUTS => {
-                let message = format!("{place} has {inputs} inputs");
-                let help = format!("it takes at most {MOST_LAW_INPUTS}");
-                findings.push(place.error("model/arity", message, help));
-            }
-            Law::Cone(c) => check_cone(&place, c, component.at("angles").len(), findings),
-            Law::HalfSpace(c) => check_arity(&place, inputs, c.normal().len(), findings),
-            Law::RelativeOrientation(_) | Law::RelativePosition(_) => {
-                check_rigid(model, &place, component, &deforming, findings);
-            }
-            Law::Shear(c) => check_shear(&place, c, findings),
-            Law::Curve(c) => check_curve(&place, c, findings),
-            Law::Map(_)
-            | Law::Depend(_)
-            | Law::Ellipse(_)
-            | Law::Angles(_)
-            | Law::Rotate(_)
-            | Law::Pivot(_)
-            | Law::Translate(_)
-            | Law::Ball(_)
-            | Law::Place(_)
-            | Law::Ellipsoid(_)
-            | Law::ConstantCurvature(_)
-            | Law::Scale(_)
-            | Law::Custom(_)
-            | Law::Product(_) => {}
+        let (has, takes) = (component.inputs.len(), component.law.takes());
+        if let Some(takes) = takes.filter(|&takes| takes != has) {
+            let message = format!("{place} has {has} inputs but its function takes {takes}");
+            let help = "connect as many inputs as the function has arguments";
+            findings.push(place.error("model/arity", message, help));
         }
+        for Fault { severity, code, said, help } in component.law.faults() {
+            let subject = place.subject.clone();
+            findings.push(finding(severity, code, subject, format!("{place} {said}"), help));
+        }
+        check_segments(model, &place, component, &deforming, findings);
     }
     check_closures(model, &deforming, findings);
 }
@@ -112,6 +76,14 @@ fn check_ports(model: &Model, place: &Part, component: &Component, findings: &mu
         let message = format!("{place} has {inputs} inputs");
         let help = format!("connect {single}, one to each of its ports");
         findings.push(place.error("model/arity", message, help));
+    }
+    for (port, signals) in component.by_port() {
+        let (has, most) = (signals.len(), port.most);
+        if has > most {
+            let message = format!("{place} has {has} {}", port.name);
+            let help = format!("it takes at most {most}");
+            findings.push(place.error("model/arity", message, help));
+        }
     }
     for (port, source) in component.ports() {
         let (name, found) = (port.name, source_type(model, source));
@@ -158,59 +130,6 @@ fn check_axis(place: &Part, name: &str, axis: Vec3, findings: &mut Vec<Diagnosti
             place.subject.clone(),
             format!("the {name} of {place} has length {length}"),
             "it is normalised; write it with length 1 to avoid this warning",
-        ));
-    }
-}
-
-fn check_arity(place: &Part, has: usize, takes: usize, findings: &mut Vec<Diagnostic>) {
-    if has != takes {
-        let message = format!("{place} has {has} inputs but its function takes {takes}");
-        let help = "connect as many inputs as the function has arguments";
-        findings.push(place.error("model/arity", message, help));
-    }
-}
-
-fn check_cone(place: &Part, cone: &JointCone, angles: usize, findings: &mut Vec<Diagnostic>) {
-    let axes = match cone.of {
-        Swinging::Angles(_) => 3,
-        Swinging::Directions(_) => 2,
-        Swinging::Orientation => 0,
-    };
-    check_arity(place, angles, axes, findings);
-    if matches!(cone.of, Swinging::Directions(_)) && cone.cone.twist_at_rest().is_some() {
-        findings.push(finding(
-            Severity::Warning,
-            "model/cone-twist",
-            place.subject.clone(),
-            format!("{place} has bounds of twist but only two angles"),
-            "give it a third angle, or omit the bounds",
-        ));
-    }
-}
-
-fn check_shear(place: &Part, shear: &Shear, findings: &mut Vec<Diagnostic>) {
-    let along = shear.along.normalized().dot(shear.across.normalized());
-    if along.abs() > 1e-6 {
-        findings.push(finding(
-            Severity::Error,
-            "model/shear-axes",
-            place.subject.clone(),
-            format!("the two directions of {place} are not perpendicular"),
-            "layers slide at a right angle to the direction in which they are stacked",
-        ));
-    }
-}
-
-fn check_curve(place: &Part, curve: &Curve, findings: &mut Vec<Diagnostic>) {
-    if curve.least_heading() < 1e-3 {
-        findings.push(finding(
-            Severity::Warning,
-            "model/curve-heading",
-            place.subject.clone(),
-            format!(
-                "the curve of {place} has zero velocity or is parallel to `up` somewhere, so its heading is undefined there"
-            ),
-            "give another `up`, or a curve whose points differ",
         ));
     }
 }
@@ -262,47 +181,35 @@ fn check_closures(model: &Model, deforming: &[bool], findings: &mut Vec<Diagnost
     }
 }
 
-fn check_weight(place: &Part, weight: f64, findings: &mut Vec<Diagnostic>) {
-    if !(0.0..=1.0).contains(&weight) {
-        let message = format!("{place} has the weight {weight}");
-        let help = "give a weight from 0 (nothing is undone) to 1 (all is)";
-        findings.push(place.error("model/weight", message, help));
-    }
-}
-
-/// Whether the segments at a port are ancestors of the one at the port `segment`.
-fn check_ancestors(
-    model: &Model,
-    place: &Part,
-    component: &Component,
-    port: &str,
-    findings: &mut Vec<Diagnostic>,
-) {
-    let Some(moved) = component.segments_at("segment").next() else { return };
-    let ancestors = model.path_to(model.segment(moved).parent);
-    for id in component.segments_at(port).filter(|id| !ancestors.contains(id)) {
-        let (name, moved) = (&model.segment(id).name, &model.segment(moved).name);
-        let message = format!(
-            "port `{port}` of {place} gets `{name}`, which is not an ancestor of `{moved}`"
-        );
-        let help = "name an ancestor of this segment";
-        findings.push(place.error("model/not-an-ancestor", message, help));
-    }
-}
-
-/// Whether everything that it reads transforms by rotations and translations alone.
-fn check_rigid(
+/// Whether the segments at the ports can be used: ancestors of the one whose joint is at a port, and moved
+/// by rotations and translations alone.
+fn check_segments(
     model: &Model,
     place: &Part,
     component: &Component,
     deforming: &[bool],
     findings: &mut Vec<Diagnostic>,
 ) {
+    let mut segments = component
+        .ports()
+        .filter_map(|(port, signal)| signal.segment().map(|segment| (port, segment)));
+    let Some((own, moved)) = segments.next() else { return };
+    if own.takes == PortType::Joint {
+        let ancestors = model.path_to(model.segment(moved).parent);
+        for (port, id) in segments.filter(|(_, id)| !ancestors.contains(id)) {
+            let (port, name) = (port.name, &model.segment(id).name);
+            let moved = &model.segment(moved).name;
+            let message = format!(
+                "port `{port}` of {place} gets `{name}`, which is not an ancestor of `{moved}`"
+            );
+            let help = "name an ancestor of this segment";
+            findings.push(place.error("model/not-an-ancestor", message, help));
+        }
+    }
     let between = model.between(component).into_iter();
     let between = between.map(|id| (model.segment(id).motion, id));
-    let own = component.segments_at("segment").next();
-    let before = own.and_then(|id| Some((component.at("before").first().copied(), id)));
-    for (motion, segment) in between.chain(before) {
+    let before = (component.at("before").first().copied(), moved);
+    for (motion, segment) in between.chain([before]) {
         if motion.is_some_and(|motion| deforms(deforming, motion)) {
             let segment = &model.segment(segment).name;
             let message = format!(

@@ -3,7 +3,7 @@
 use super::ModelReader;
 use crate::document::fields::Fields;
 use condyle_model::Law;
-use condyle_model::limit::{Ellipse, HalfSpace};
+use condyle_model::component::{Ellipse, HalfSpace};
 
 impl ModelReader<'_> {
     /// An ellipse; its lengths are in the unit `in`, radians without it.
