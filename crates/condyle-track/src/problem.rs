@@ -23,7 +23,8 @@ pub(crate) struct Frame<'a> {
 pub(crate) struct Buffers {
     pub pose: Pose,
     pub jacobian: Jacobian,
-    /// Whether the Jacobian and the closures are those of the pose.
+    /// The numbers at which the pose was evaluated with all derivatives, and whether it still is there.
+    pub at: Vec<f64>,
     pub differentiated: bool,
     pub closures: ClosureRows,
     /// Stored numbers where the solver is, and where it tries to go.
@@ -48,19 +49,25 @@ impl Buffers {
         Some(&self.pose)
     }
 
-    /// Poses the model at `trial` with all derivatives, if it is not there. A frame begins where the
-    /// last one ended.
-    fn differentiate(&mut self, tracker: &Tracker) {
-        let Self { pose, jacobian, closures, trial, .. } = self;
-        let same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits();
-        if self.differentiated && pose.effective().iter().zip(&*trial).all(same) {
-            return;
+    /// Poses the model at `trial` with all derivatives, if it is not there; whether it was not. A frame
+    /// begins where the last one ended.
+    fn differentiate(&mut self, tracker: &Tracker) -> bool {
+        let Self { pose, jacobian, closures, trial, at, .. } = self;
+        if self.differentiated && (same(at, trial) || same(pose.effective(), trial)) {
+            return false;
         }
         let evaluated = tracker.part.evaluate_with_jacobian(trial, pose, jacobian);
         debug_assert!(evaluated.is_ok(), "buffers are made for this program");
         closures.update(&tracker.model, &tracker.part, pose, Some(jacobian));
+        at.copy_from_slice(trial);
         self.differentiated = true;
+        true
     }
+}
+
+/// Whether two lists of numbers are the same, bit by bit.
+fn same(a: &[f64], b: &[f64]) -> bool {
+    a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
 }
 
 impl Frame<'_> {
@@ -136,6 +143,12 @@ impl Problem for Frame<'_> {
     }
 
     fn linearise(&mut self, local: &mut LocalModel) {
+        let Buffers { current, trial, .. } = &mut *self.buffers;
+        trial.copy_from_slice(current);
+        // After a step that was rejected, pose and errors are those of where it led.
+        if self.buffers.differentiate(self.tracker) {
+            target::measure(self);
+        }
         local.hessian.fill(0.0);
         local.gradient.fill(0.0);
         target::linearise(self, local);

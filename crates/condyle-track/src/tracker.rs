@@ -189,6 +189,7 @@ impl Scratch {
             buffers: Buffers {
                 pose: Pose::new(program),
                 jacobian: Jacobian::new(program),
+                at: vec![0.0; stored],
                 differentiated: false,
                 closures,
                 current: vec![0.0; stored],

@@ -8,6 +8,7 @@ use condyle_math::{Quat, Vec3};
 use condyle_model::component::{Along, Scale};
 use condyle_model::model::{Closure, Condition};
 use condyle_model::{Law, Mode, ModelBuilder, Pose, Program, SegmentId};
+use condyle_solve::least_squares::Problem;
 
 /// Numbers between -1 and 1: SplitMix64 (Steele, Lea & Flood 2014).
 pub(crate) struct Dice(pub u64);
@@ -125,6 +126,30 @@ fn of_kind(
     let value = target.value(&mut frame);
     target.linearise(&mut frame, &mut local);
     (value * if matches!(part, Part::Mean) { frame.marker_scale() } else { 1.0 }, local)
+}
+
+#[test]
+fn a_rejected_step_leaves_the_model_of_the_current_posture() {
+    for seed in 0..10 {
+        let (tracker, rest, seen) = at_rest(seed);
+        let mut scratch = Scratch::new(&tracker);
+        scratch.buffers.current.copy_from_slice(&rest);
+        let mut local = scratch.solver.local().clone();
+        local.curved = true;
+        let n = tracker.unknown_len();
+        let mut limits = vec![0.0; tracker.limit_rows];
+        let buffers = &mut scratch.buffers;
+        let mut frame = Frame { tracker: &tracker, seen: &seen, index: 0, buffers };
+        frame.weigh();
+        frame.evaluate(&vec![0.0; n], &mut [], &mut limits);
+        frame.accept();
+        frame.linearise(&mut local);
+        let before = local.clone();
+        frame.evaluate(&vec![0.1; n], &mut [], &mut limits);
+        frame.linearise(&mut local);
+        assert_eq!(local.gradient, before.gradient, "{seed}");
+        assert_eq!(local.hessian, before.hessian, "{seed}");
+    }
 }
 
 #[test]
