@@ -251,6 +251,29 @@ impl Model {
         }
     }
 
+    /// The coordinates of a joint set.
+    pub fn coordinates_of(&self, set: JointSetId) -> impl Iterator<Item = CoordinateId> {
+        self.coordinate_ids().filter(move |&id| self.coordinate(id).joint_set == set)
+    }
+
+    /// The components of a joint set.
+    pub fn components_of(&self, set: JointSetId) -> impl Iterator<Item = ComponentId> {
+        self.component_ids().filter(move |&id| self.components[id.index()].joint_set == set)
+    }
+
+    /// The outputs of a joint set: the segments that it moves, each with its transform.
+    pub fn outputs_of(&self, set: JointSetId) -> impl Iterator<Item = (SegmentId, Signal)> {
+        self.segment_ids().filter_map(move |id| {
+            let segment = self.segment(id);
+            Some((id, segment.motion?)).filter(|_| segment.joint_set == Some(set))
+        })
+    }
+
+    /// The positions of all joint sets.
+    pub fn joint_set_ids(&self) -> impl ExactSizeIterator<Item = JointSetId> + use<> {
+        (0..self.joint_sets.len() as u32).map(JointSetId)
+    }
+
     /// The model without its loops.
     #[must_use]
     pub fn without_closures(&self) -> Self {

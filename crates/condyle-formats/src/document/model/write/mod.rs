@@ -87,18 +87,13 @@ impl Writer<'_> {
             line!(self, "\n[joint_set.{set}.component.{name}.{kind}]");
             self.component(component);
         }
-        for (index, set) in model.joint_sets().iter().enumerate() {
-            let moved = model.segments().iter().filter_map(|segment| {
-                let motion = segment.motion?;
-                (segment.joint_set?.index() == index).then_some((segment, motion))
-            });
-            let moved: Vec<_> = moved.collect();
-            if !moved.is_empty() {
-                line!(self, "\n[joint_set.{}.output]", key(&set.name));
-            }
-            for (segment, motion) in moved {
-                let port = self.port(Some(index), motion);
-                line!(self, "{} = {port}", key(&segment.name));
+        for (id, set) in model.joint_set_ids().zip(model.joint_sets()) {
+            for (number, (segment, motion)) in model.outputs_of(id).enumerate() {
+                if number == 0 {
+                    line!(self, "\n[joint_set.{}.output]", key(&set.name));
+                }
+                let port = self.port(Some(id.index()), motion);
+                line!(self, "{} = {port}", key(&model.segment(segment).name));
             }
         }
         for marker in model.markers() {
