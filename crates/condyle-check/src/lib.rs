@@ -11,7 +11,7 @@
 //! | `range` | limits that cross, have no effect or look like degrees; defaults outside them |
 //! | `domain` | functions used beyond their knots |
 //! | `coupling` | followers driven out of their range, chains, coordinates that move nothing |
-//! | `limit` | cones whose projection jumps inside declared ranges, contacts that do not touch |
+//! | `limit` | limits whose projection jumps inside declared ranges, contacts that do not touch, components that nothing uses |
 //! | `rotation` | axes that are parallel, in the default pose or inside a range |
 //! | `place` | joints and markers far from their segment, markers at the same point |
 //! | `closure` | loops that are open in the default pose |

@@ -5,6 +5,7 @@ use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_model::CoordinateKind;
 use condyle_model::component::{Component, Signal};
 use condyle_model::limit::Limit;
+use condyle_model::model::ComponentId;
 
 /// A posture within this distance, in radians, of a discontinuity of the projection is reported:
 /// half a degree.
@@ -16,12 +17,16 @@ const STEPS: usize = 13;
 /// A gap below this is rounding in a file: 0.01 mm.
 const TOUCHING: f64 = 1e-5;
 
-/// Cones whose projection jumps inside the declared ranges, contacts that do not touch by default.
+/// Limits whose projection jumps inside the declared ranges, contacts that do not touch by default, and
+/// components that nothing uses, limits first of all.
 pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     for component in subject.model.components() {
         if let Some(limit) = component.law.limit() {
             findings.extend(jump(subject, component, limit));
         }
+    }
+    for id in subject.model.unused_components() {
+        findings.push(unused(subject, id));
     }
     for (number, id) in subject.program.contacts().enumerate() {
         let Some(report) = subject.rest.contact(number) else { continue };
@@ -41,6 +46,24 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
             ));
         }
     }
+}
+
+/// A component on which no segment, coordinate or limit depends.
+fn unused(subject: &Inspected<'_>, id: ComponentId) -> Diagnostic {
+    let component = &subject.model.components()[id.index()];
+    let (name, kind) = (&component.name, component.law.kind().name);
+    let (message, help) = match component.law.bounds() {
+        true => (
+            format!("{kind} `{name}` limits nothing: no component reads what it lets through"),
+            format!("let the components after it read `{name}` instead of what it limits"),
+        ),
+        false => (
+            format!("{kind} `{name}` is not used: no segment, coordinate or limit depends on it"),
+            "connect it, or leave it out".to_owned(),
+        ),
+    };
+    let about = [subject.model.component_subject(component)];
+    finding(Severity::Warning, "lint/unused-component", about, message, help)
 }
 
 /// The posture inside the declared ranges that is nearest to a discontinuity of the projection.

@@ -4,7 +4,9 @@ use condyle_check as lint;
 use condyle_diagnostics::{Diagnostic, Severity};
 use condyle_math::function::{Function, PiecewiseLinear, SimmSpline};
 use condyle_math::{Affine, Vec3};
-use condyle_model::component::{Contact, ContactPair, Gliding, JointCone, Law, Signal, Swinging};
+use condyle_model::component::{
+    Contact, ContactPair, Ellipse, Gliding, JointCone, Law, Signal, Swinging,
+};
 use condyle_model::model::{Closure, Condition};
 use condyle_model::{Cone, ConePoint, Projection};
 use condyle_model::{CoordinateKind, Model, ModelBuilder, Range};
@@ -131,7 +133,11 @@ fn functions_that_are_flat_need_no_knots() {
     let flexion = b.coordinate_at(0).expect("a coordinate");
     let set = b.coordinates()[0].joint_set;
     let flat = PiecewiseLinear::new(vec![-0.1, 0.1], vec![0.02, 0.02]).expect("knots");
-    b.map(set, "flat", flexion, condyle_math::function::Curve::PiecewiseLinear(flat).into());
+    let flat = condyle_math::function::Curve::PiecewiseLinear(flat).into();
+    let lifted = b.map(set, "flat", flexion, flat);
+    let slide = b.translate(set, "slide", lifted, Vec3::Y);
+    let pad = b.segment("pad", None);
+    b.output(set, pad, slide);
     sound(b);
 }
 
@@ -499,4 +505,30 @@ fn a_contact_that_floats() {
     sound(ribs(0.1));
     let finding = only(ribs(0.25), Severity::Warning, "lint/no-contact");
     assert!(finding.message.contains("169.26 mm outside"), "{}", finding.message);
+}
+
+#[test]
+fn a_limit_that_nothing_reads() {
+    let wrist = |limited: bool| {
+        let mut b = ModelBuilder::new("wrist");
+        let hand = b.segment("hand", None);
+        let set = b.joint_set("wrist");
+        let angles = ["flexion", "deviation"].map(|name| {
+            let id = b.coordinate(set, name, CoordinateKind::Rotation);
+            b.coordinate_mut(id).range = Range::new(-1.0, 1.0);
+            Signal::from(id)
+        });
+        let ellipse = Law::Ellipse(Ellipse::new([0.0, 0.0], [1.0, 0.4], 0.2).unwrap());
+        let legal = b.component(set, "legal", ellipse, angles.to_vec());
+        let Signal::Output(id, _) = legal else { unreachable!("a component has outputs") };
+        let read = |k: usize| if limited { Signal::Output(id, k as u32) } else { angles[k] };
+        let flex = b.rotate(set, "flex", read(0), Vec3::Z);
+        let deviate = b.rotate(set, "deviate", read(1), Vec3::X);
+        let motion = b.product(set, "motion", vec![flex, deviate]);
+        b.output(set, hand, motion);
+        b
+    };
+    sound(wrist(true));
+    let finding = only(wrist(false), Severity::Warning, "lint/unused-component");
+    assert!(finding.message.contains("`legal` limits nothing"), "{}", finding.message);
 }

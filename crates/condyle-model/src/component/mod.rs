@@ -35,7 +35,7 @@
 //! | [`Custom`] | scalars → the transform of a user's law |
 //! | [`Product`] | transforms → their product |
 //!
-//! To add a law: a file here with its struct, its formula and its [`Contract`], a variant of [`Law`], and
+//! To add a law: a file here with its struct, its formula and its `Contract`, a variant of [`Law`], and
 //! its compilation in `evaluate/compile/`; a smooth function of scalars only needs to implement
 //! [`MotionLaw`] for that. The compiler names every place.
 
@@ -359,6 +359,11 @@ impl Law {
     /// The type of the outputs, and their number.
     pub fn outputs(&self) -> (PortType, usize) {
         self.contract().outputs()
+    }
+
+    /// Whether it bounds what it reads.
+    pub fn bounds(&self) -> bool {
+        matches!(self, Self::Depend(_)) || self.limit().is_some()
     }
 
     /// The function of few numbers that it is, if it is one.

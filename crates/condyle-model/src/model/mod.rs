@@ -20,7 +20,7 @@ pub use posture::PostureTerm;
 pub use scaling::SizeGroup;
 pub use segment::Segment;
 
-pub(crate) use check::{Node, dependency_order};
+pub(crate) use check::{Node, dependency_order, measured};
 
 pub use crate::position::{ComponentId, CoordinateId, JointSetId, SegmentId};
 
@@ -289,6 +289,28 @@ impl Model {
             .filter_map(|segment| self.segment(segment).motion)
             .chain(component.values())
             .collect()
+    }
+
+    /// The components that nothing uses: no segment, coordinate or limit depends on them. A limit on what is
+    /// measured between segments is used by itself; other limits only where something reads what they let
+    /// through.
+    pub fn unused_components(&self) -> Vec<ComponentId> {
+        let measured = measured(self, &dependency_order(self).unwrap_or_default());
+        let mut used = vec![false; self.components.len()];
+        let bounds =
+            |id: &ComponentId| measured[id.index()] && self.components[id.index()].law.bounds();
+        let limits = self.component_ids().filter(bounds).map(|id| Signal::Output(id, 0));
+        let motions = self.segments.iter().filter_map(|segment| segment.motion);
+        let leaders = self.coordinates.iter().filter_map(|coordinate| coordinate.follows);
+        let mut open: Vec<Signal> = motions.chain(leaders).chain(limits).collect();
+        while let Some(signal) = open.pop() {
+            if let Signal::Output(id, _) = signal
+                && !std::mem::replace(&mut used[id.index()], true)
+            {
+                open.extend(self.reads(id));
+            }
+        }
+        self.component_ids().filter(|id| !used[id.index()]).collect()
     }
 
     /// The segments whose motions move the places at a component's ports against each other, those

@@ -8,7 +8,7 @@ use super::instruction::{Code, Frame, Number};
 use super::program::Program;
 use crate::component::{Law, Signal};
 use crate::model::{
-    ComponentId, CoordinateId, CoordinateKind, Model, Node, SegmentId, dependency_order,
+    ComponentId, CoordinateId, CoordinateKind, Model, Node, SegmentId, dependency_order, measured,
 };
 use std::collections::HashMap;
 
@@ -173,36 +173,6 @@ fn compile(model: &Model, wanted: &[bool], moving: &[bool]) -> Program {
     compiler.program
 }
 
-/// Whether a law bounds its inputs.
-fn is_limit(law: &Law) -> bool {
-    matches!(law, Law::Depend(_)) || law.limit().is_some()
-}
-
-/// Which components depend on what is measured between segments.
-fn measured(model: &Model, order: &[Node]) -> Vec<bool> {
-    let mut coordinates = vec![false; model.coordinates.len()];
-    let mut components = vec![false; model.components.len()];
-    for node in order {
-        let of = |source: Signal| match source {
-            Signal::Coordinate(id) => coordinates[id.index()],
-            Signal::Output(id, _) => components[id.index()],
-            Signal::Segment(_) => false,
-        };
-        match *node {
-            Node::Coordinate(id) => {
-                coordinates[id.index()] = model.coordinate(id).follows.is_some_and(of);
-            }
-            Node::Component(id) => {
-                let component = &model.components[id.index()];
-                let measures =
-                    matches!(component.law, Law::RelativeOrientation(_) | Law::RelativePosition(_));
-                components[id.index()] = measures || component.values().any(of);
-            }
-        }
-    }
-    components
-}
-
 impl Compiler<'_> {
     /// Marks the components that wanted segments, coordinates and limits depend on, directly or not; the
     /// others are not compiled.
@@ -212,7 +182,7 @@ impl Compiler<'_> {
         let followed = || model.coordinates.iter().filter_map(|c| c.follows);
         // A limit on what is measured moves nothing, so that nothing has to read its outputs.
         let bounds = |id: &ComponentId| {
-            self.measured[id.index()] && is_limit(&model.components[id.index()].law)
+            self.measured[id.index()] && model.components[id.index()].law.bounds()
         };
         let measured = model.component_ids().filter(bounds).map(|id| Signal::Output(id, 0));
         let measured: Vec<Signal> = measured.collect();
@@ -223,7 +193,7 @@ impl Compiler<'_> {
         self.readers = readers;
         let limits = model
             .component_ids()
-            .filter(|id| of_model[id.index()] && is_limit(&model.components[id.index()].law));
+            .filter(|id| of_model[id.index()] && model.components[id.index()].law.bounds());
         let wanted = (0..wanted.len()).filter(|&segment| wanted[segment]).filter_map(motion);
         let limits = limits.map(|id| Signal::Output(id, 0));
         self.needed = self.reached(order, wanted.chain(followed()).chain(limits)).0;
@@ -265,7 +235,7 @@ impl Compiler<'_> {
         for node in order {
             let Node::Component(id) = *node else { continue };
             let component = &self.model.components[id.index()];
-            if !self.needed[id.index()] || self.measured[id.index()] || !is_limit(&component.law) {
+            if !self.needed[id.index()] || self.measured[id.index()] || !component.law.bounds() {
                 continue;
             }
             let held = match component.law {

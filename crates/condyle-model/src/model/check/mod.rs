@@ -3,7 +3,7 @@
 mod component;
 mod order;
 
-pub(crate) use order::{Node, dependency_order};
+pub(crate) use order::{Node, dependency_order, measured};
 
 use super::{CoordinateKind, Model, SegmentId};
 use crate::component::{PortType, Signal};

@@ -1,6 +1,6 @@
 //! The order in which things are computed, or the cycle that prevents one.
 
-use crate::component::Signal;
+use crate::component::{Law, Signal};
 use crate::model::{ComponentId, CoordinateId, Model};
 use condyle_diagnostics::Subject;
 
@@ -87,4 +87,29 @@ pub(crate) fn dependency_order(model: &Model) -> Result<Vec<Node>, (Subject, Vec
         }
     }
     Ok(order)
+}
+
+/// Which components depend on what is measured between segments, in this order of evaluation.
+pub(crate) fn measured(model: &Model, order: &[Node]) -> Vec<bool> {
+    let mut coordinates = vec![false; model.coordinates.len()];
+    let mut components = vec![false; model.components.len()];
+    for node in order {
+        let of = |source: Signal| match source {
+            Signal::Coordinate(id) => coordinates[id.index()],
+            Signal::Output(id, _) => components[id.index()],
+            Signal::Segment(_) => false,
+        };
+        match *node {
+            Node::Coordinate(id) => {
+                coordinates[id.index()] = model.coordinate(id).follows.is_some_and(of);
+            }
+            Node::Component(id) => {
+                let component = &model.components[id.index()];
+                let measures =
+                    matches!(component.law, Law::RelativeOrientation(_) | Law::RelativePosition(_));
+                components[id.index()] = measures || component.values().any(of);
+            }
+        }
+    }
+    components
 }
