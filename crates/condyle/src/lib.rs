@@ -255,6 +255,7 @@
 //! | [`motion`] | recordings, tables, motions, postures, differences |
 //! | [`tracking`] | recordings to motions; streams; orientations of inertial sensors |
 //! | [`scaling`] | a model as large as a person |
+//! | [`legal`] | poses within all limits |
 //! | [`posing`] | the pose nearest to rest that meets goals |
 //! | [`check`] | findings about a model, or about a motion of it |
 //! | [`formats`], [`open`], [`encode`] | bytes to values and back, by path or not |
@@ -264,6 +265,7 @@
 
 #[cfg(feature = "formats")]
 pub mod encode;
+pub mod legal;
 pub mod matching;
 #[cfg(feature = "formats")]
 pub mod open;

@@ -27,13 +27,8 @@ use crate::tracking::fits_pattern;
 use condyle_diagnostics::{Diagnostic, Error, did_you_mean};
 use condyle_formats::document::goals::{GoalList, Named, NamedAim, NamedPoint};
 use condyle_math::{Quat, Vec3};
-use condyle_model::{
-    CoordinateId, CoordinateKind, Mode, Model, Pose, Program, SegmentId, SizeMismatch,
-};
-use condyle_motion::Motion;
-pub use condyle_track::goal::{
-    Aim, Anchor, Answer, By, Goal, Goals, MET, Miss, Rest, Side, nearest_legal, solve,
-};
+use condyle_model::{CoordinateId, CoordinateKind, Mode, Model, Pose, Program, SegmentId};
+pub use condyle_track::goal::{Aim, Anchor, Answer, By, Goal, Goals, MET, Miss, Rest, Side, solve};
 
 /// A pose, and what was asked of it.
 #[derive(Clone, Debug)]
@@ -60,49 +55,6 @@ pub fn pose(model: &Model, list: &GoalList, rest: Option<&[f64]>) -> Result<Pose
     let goals = resolve(model, list, rest)?;
     let answer = solve(model, &goals);
     Ok(Posed { goals, answer })
-}
-
-/// Evaluates a pose within the limits of its model: ranges and limits on coordinates project, and where a
-/// limit on what is measured between segments is broken then, the nearest legal pose is found. Loops are
-/// not closed.
-///
-/// Whether a pose was looked for that way: the effective coordinates of `pose` are then the answer's.
-///
-/// # Errors
-/// If `asked` or the pose is not of this program.
-pub fn evaluate_legal(
-    model: &Model,
-    program: &Program,
-    asked: &[f64],
-    pose: &mut Pose,
-) -> Result<bool, SizeMismatch> {
-    program.evaluate(asked, Mode::Posed, pose)?;
-    // Rounding in the numbers of a file breaks no limit.
-    let broken = |&row: &usize| pose.limit_row(row) < -MET;
-    if !program.measured_limit_rows().iter().any(broken) {
-        return Ok(false);
-    }
-    let Some(legal) = nearest_legal(model, asked) else { return Ok(false) };
-    program.evaluate(&legal, Mode::Open, pose)?;
-    Ok(true)
-}
-
-/// Gives every frame of a motion that breaks a limit on what is measured between segments the nearest legal
-/// pose; other limits hold in posed mode. How many frames changed.
-pub fn keep_limits(model: &Model, motion: &mut Motion) -> usize {
-    let program = Program::compile(model);
-    if program.measured_limit_rows().is_empty() {
-        return 0;
-    }
-    let mut pose = Pose::new(&program);
-    let mut changed = 0;
-    for frame in &mut motion.frames {
-        if let Ok(true) = evaluate_legal(model, &program, frame, &mut pose) {
-            frame.copy_from_slice(pose.effective());
-            changed += 1;
-        }
-    }
-    changed
 }
 
 /// What a list asks of a model.

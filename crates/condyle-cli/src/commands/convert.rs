@@ -9,7 +9,7 @@ use condyle::formats::document::{self, Document};
 use condyle::formats::{Content, ContentKind, Format, Id, trc};
 use condyle::open::Cause;
 use condyle::{
-    AngleUnit, Interpolation, Mode, Model, Motion, Program, Table, encode, open, posing, shipped,
+    AngleUnit, Interpolation, Mode, Model, Motion, Program, Table, encode, legal, open, shipped,
 };
 use std::path::{Path, PathBuf};
 
@@ -176,7 +176,7 @@ impl Convert {
             }
         };
         if self.limits == Limits::On {
-            let changed = posing::keep_limits(&model, &mut motion);
+            let changed = legal::keep(&model, &mut motion);
             if changed > 0 {
                 eprintln!(
                     "note: {changed} of {} frames broke limits between segments: theirs is the nearest \

@@ -5,7 +5,7 @@ use crate::failure::{Failure, warned};
 use crate::output;
 use clap::Args;
 use condyle::formats::poses::Resolved;
-use condyle::{Mode, Model, Motion, Pose, Program, open, posing};
+use condyle::{Mode, Model, Motion, Pose, Program, legal, open};
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;
 
@@ -47,7 +47,7 @@ impl Fk {
             requests.motion.times.iter().zip(&requests.motion.frames).enumerate()
         {
             let evaluated = match self.limits {
-                Limits::On => posing::evaluate_legal(&model, &program, stored, &mut pose),
+                Limits::On => legal::evaluate(&model, &program, stored, &mut pose),
                 Limits::Off => program.evaluate(stored, Mode::Open, &mut pose).map(|()| false),
             };
             solved += usize::from(evaluated.map_err(|error| Failure::new(error.to_string()))?);

@@ -30,6 +30,7 @@ pub use jump::{Jump, JumpCause};
 pub use live::Live;
 pub use remarks::BeyondRange;
 pub use report::{Determination, FailedFrame, MarkerErrors, Report, Summary};
+#[cfg(feature = "document")]
 pub(crate) use request::fits_pattern;
 pub use request::{CoordinateRequest, CoordinateValue, PostureRequest, Request};
 pub use unused::{Unused, UnusedMarkers};

@@ -3,8 +3,8 @@
 
 use crate::figure::Draws;
 use condyle::formats::document;
+use condyle::legal::nearest as nearest_legal;
 use condyle::model::component::Law;
-use condyle::posing::nearest_legal;
 use condyle::{Jacobian, Mode, Model, Pose, Program, shipped};
 
 /// What is added to the right side; the left is its mirror image. Numbers are chosen so that some poses
