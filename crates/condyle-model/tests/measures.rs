@@ -1,8 +1,10 @@
 //! What is measured between segments, against the transforms of the pose.
 
 use condyle_math::{Affine, EulerOrder, Mat3, Quat, Vec3};
-use condyle_model::component::HalfSpace;
-use condyle_model::component::{AngleNames, Angles, RelativeOrientation, RelativePosition};
+use condyle_model::component::{
+    AngleNames, Angles, Contact, ContactPair, Gliding, HalfSpace, RelativeOrientation,
+    RelativePosition,
+};
 use condyle_model::{Law, Mode, Model, ModelBuilder, Pose, Program, SegmentId, Signal};
 
 /// A number in -1..1 for each index.
@@ -181,4 +183,21 @@ fn twist_and_swing_make_the_rotation_again() {
                 && (pose.effective()[5] - 0.72).abs() < 1e-14
         );
     }
+}
+
+#[test]
+fn what_measures_or_allows_nothing_is_an_error() {
+    let (mut b, segments) = body();
+    let set = b.joint_set("measures");
+    let nothing = RelativePosition { reference: false, point: Vec3::ZERO, along: vec![] };
+    let law = Law::RelativePosition(nothing);
+    b.component(set, "nothing", law, vec![segments[1].into()]);
+    let pair = ContactPair { first: Vec3::Y * 0.1, second: Vec3::Z * 0.1, at: [0.0; 2] };
+    let ribs = Gliding::new(Affine::IDENTITY, Vec3::new(0.1, 0.1, 0.1), Vec3::Z, vec![pair]);
+    let contact =
+        Law::Contact(Contact { before: false, most_gap: Some(-0.01), law: ribs.unwrap() });
+    b.component(set, "glide", contact, vec![segments[1].into(), segments[0].into()]);
+    let errors = b.build().unwrap_err();
+    let codes: Vec<&str> = errors.iter().map(|said| said.code).collect();
+    assert_eq!(codes, ["model/measure", "model/gap"]);
 }

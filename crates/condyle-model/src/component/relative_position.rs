@@ -5,7 +5,8 @@
 //! through the middle of the thorax: one direction, normal to the plane. Limits on it give their rows in
 //! both modes and move nothing. No kinks.
 
-use super::{Contract, Geometry, Kind, Port, PortType};
+use super::{Contract, Fault, Geometry, Kind, Port, PortType};
+use condyle_diagnostics::Severity;
 use condyle_math::Vec3;
 
 /// The coordinates of a point of a `segment` along directions of a `reference` segment, or of the world.
@@ -32,6 +33,18 @@ impl RelativePosition {
 impl Contract for RelativePosition {
     fn has(&self, port: &Port) -> bool {
         self.reference || port.name != "reference"
+    }
+
+    fn faults(&self) -> Vec<Fault> {
+        if !self.along.is_empty() && self.point.is_finite() {
+            return vec![];
+        }
+        vec![Fault {
+            severity: Severity::Error,
+            code: "model/measure",
+            said: "measures nothing".to_owned(),
+            help: "give a finite point and one direction or more",
+        }]
     }
 
     fn outputs(&self) -> (PortType, usize) {

@@ -37,8 +37,9 @@ mod quartic;
 
 pub use pairs::ContactPair;
 
-use super::{Contract, Geometry, Kind, Mirrored, Port, PortType, Reflection};
+use super::{Contract, Fault, Geometry, Kind, Mirrored, Port, PortType, Reflection};
 use closest::distance;
+use condyle_diagnostics::Severity;
 use condyle_math::{Affine, Lane, Mat3, Scalar, Vec3};
 use pairs::Places;
 use quartic::{Quartic, Turn};
@@ -74,6 +75,18 @@ impl Contact {
 impl Contract for Contact {
     fn has(&self, port: &Port) -> bool {
         self.before || port.name != "before"
+    }
+
+    fn faults(&self) -> Vec<Fault> {
+        match self.most_gap {
+            Some(gap) if gap.is_nan() || gap < 0.0 => vec![Fault {
+                severity: Severity::Error,
+                code: "model/gap",
+                said: format!("allows a gap of at most {gap} m"),
+                help: "give the largest distance of its points from the ellipsoid, at least 0",
+            }],
+            _ => vec![],
+        }
     }
 
     fn geometry(&mut self) -> Vec<Geometry<'_>> {

@@ -71,7 +71,7 @@ impl Compiler<'_> {
         let gliding = component.segments_at("segment").next().map(|id| self.model.segment(id));
         let joint = gliding.map_or(Affine::IDENTITY, |segment| segment.joint_in_segment);
         self.fixed(gliding.map_or(Affine::IDENTITY, |s| s.joint_in_parent), &mut steps);
-        self.shared_step(component.at("before").first().copied(), &mut steps);
+        self.motion(component.at("before").first().copied(), &mut steps);
         let frame = self.new_transform();
         self.chain(self.program.code.identity, steps, frame);
         let drivers = self.registers(component.at("drivers"));
@@ -114,21 +114,21 @@ impl Compiler<'_> {
         frame
     }
 
-    /// Appends the transform of a segment in its parent, whose motion has a register since this reads
-    /// it, too.
+    /// Appends the transform of a segment in its parent.
     fn joint(&mut self, id: SegmentId, steps: &mut Vec<Step>) {
         let segment = self.model.segment(id);
         self.fixed(segment.joint_in_parent, steps);
-        self.shared_step(segment.motion, steps);
+        self.motion(segment.motion, steps);
         self.fixed(segment.joint_in_segment.rigid_inverse(), steps);
     }
 
-    /// Appends a transform that several components read, by its register.
-    fn shared_step(&self, motion: Option<Signal>, steps: &mut Vec<Step>) {
-        if let Some(Signal::Output(motion, _)) = motion
-            && let Some(register) = self.shared[motion.index()]
-        {
-            steps.push(Step::Transform(register));
+    /// Appends a transform: by its register where it has one, else its own steps.
+    fn motion(&mut self, motion: Option<Signal>, steps: &mut Vec<Step>) {
+        if let Some(Signal::Output(motion, _)) = motion {
+            match self.shared[motion.index()] {
+                Some(register) => steps.push(Step::Transform(register)),
+                None => self.append(motion, steps),
+            }
         }
     }
 
@@ -278,14 +278,7 @@ impl Compiler<'_> {
         let segment = self.model.segment(id);
         let base = segment.parent.map_or(self.program.code.base, |p| Frame(p.0));
         let mut steps = vec![];
-        self.fixed(segment.joint_in_parent, &mut steps);
-        if let Some(Signal::Output(component, _)) = segment.motion {
-            match self.shared[component.index()] {
-                Some(register) => steps.push(Step::Transform(register)),
-                None => self.append(component, &mut steps),
-            }
-        }
-        self.fixed(segment.joint_in_segment.rigid_inverse(), &mut steps);
+        self.joint(id, &mut steps);
         self.chain(base, steps, Frame(id.0));
     }
 
