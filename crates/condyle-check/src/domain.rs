@@ -6,7 +6,7 @@
 use super::{Inspected, amount, finding};
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_math::function::Function;
-use condyle_model::component::{Law, Signal};
+use condyle_model::component::{Centre, Component, Law, Signal};
 use condyle_model::{CoordinateId, CoordinateKind};
 use std::collections::BTreeMap;
 
@@ -33,14 +33,13 @@ struct Beyond {
 pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     let mut found: BTreeMap<(CoordinateId, bool), Vec<Beyond>> = BTreeMap::new();
     for (index, component) in subject.model.components().iter().enumerate() {
-        let Law::Map(map) = &component.law else { continue };
-        if !map.functions.iter().any(|f| f.domain().is_some() && !is_flat(f)) {
-            continue;
-        }
-        let Some(taken) = subject.reach.taken(component.inputs[0]) else { continue };
+        findings.extend(interval(subject, component));
+        let uses = uses(subject, component);
+        let Some(first) = uses.first() else { continue };
+        let Some(taken) = subject.reach.taken(first.argument) else { continue };
         let ([leader], Some(extremes)) = (&taken.leaders[..], taken.extremes()) else { continue };
         let set = &subject.model.joint_sets()[component.joint_set.index()].name;
-        for (output, function) in map.functions.iter().enumerate() {
+        for Use { function, makes, .. } in &uses {
             let Some((first, last)) = function.domain().filter(|_| !is_flat(function)) else {
                 continue;
             };
@@ -58,7 +57,7 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
                     argument: *argument,
                     leader: values[0],
                     drift: value(*argument) - value(knot),
-                    makes: made(subject, index, output),
+                    makes: *makes,
                     direct: (values[0] - argument).abs() < 1e-6,
                 });
             }
@@ -69,22 +68,59 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     }
 }
 
-/// What an output is used as: an angle, a distance, the value of a coordinate, or something else.
-fn made(subject: &Inspected<'_>, component: usize, output: usize) -> CoordinateKind {
-    let is_it = |source: Signal| matches!(source, Signal::Output(id, n) if (id.index(), n as usize) == (component, output));
-    for component in subject.model.components() {
-        let kind = match component.law {
-            Law::Rotate(_) => CoordinateKind::Rotation,
-            Law::Translate(_) => CoordinateKind::Translation,
-            _ => continue,
-        };
-        if component.values().any(is_it) {
-            return kind;
+/// A function of a component: what it is evaluated at, and what it makes.
+struct Use<'m> {
+    function: &'m Function,
+    argument: Signal,
+    makes: CoordinateKind,
+}
+
+/// The functions of a component; all have the same argument.
+fn uses<'m>(subject: &Inspected<'m>, component: &'m Component) -> Vec<Use<'m>> {
+    match &component.law {
+        Law::Map(map) => {
+            let Some(&argument) = component.inputs.first() else { return vec![] };
+            let one = |(output, function)| {
+                let signal = subject.output(component, output);
+                let makes = signal.map_or(CoordinateKind::Other, |signal| subject.used_as(signal));
+                Use { function, argument, makes }
+            };
+            map.functions.iter().enumerate().map(one).collect()
         }
+        Law::Depend(depend) => {
+            let [passive, argument] = component.inputs[..] else { return vec![] };
+            let makes = subject.kind_of(passive);
+            let bounds = [&depend.lower, &depend.upper].into_iter().flatten();
+            bounds.map(|function| Use { function, argument, makes }).collect()
+        }
+        _ => vec![],
     }
-    let mut coordinates = subject.model.coordinates().iter();
-    let follower = coordinates.find(|c| c.follows.is_some_and(is_it));
-    follower.map_or(CoordinateKind::Other, |c| c.kind)
+}
+
+/// A pivot whose last interval ends before the range of its angle does.
+fn interval(subject: &Inspected<'_>, component: &Component) -> Option<Diagnostic> {
+    let Law::Pivot(pivot) = &component.law else { return None };
+    let Centre::Intervals(list) = pivot.centre() else { return None };
+    let (end, _) = *list.last().filter(|(end, _)| end.is_finite())?;
+    let (_, most) = subject.range_of(*component.inputs.first()?)?;
+    if most - end <= 0.01 {
+        return None;
+    }
+    let kind = CoordinateKind::Rotation;
+    Some(finding(
+        Severity::Warning,
+        "lint/beyond-intervals",
+        [subject.model.component_subject(component)],
+        format!(
+            "the angle of pivot `{}` may reach {}, but its last interval ends at {}: its last centre is used \
+             for the last {}",
+            component.name,
+            amount(kind, most),
+            amount(kind, end),
+            amount(kind, most - end)
+        ),
+        "add an interval up to the end of the range, or leave out the last `to`",
+    ))
 }
 
 /// The name of a function: the coordinate that follows it, or its component.

@@ -12,8 +12,12 @@
 //! | `domain` | functions used beyond their knots |
 //! | `coupling` | followers driven out of their range, chains, coordinates that move nothing |
 //! | `limit` | limits whose projection jumps inside declared ranges, contacts that do not touch, components that nothing uses |
+//! | `depend` | bounds of one angle by another that cross |
+//! | `wiring` | axes of cones, angles that pass by their limit, the order of factors |
+//! | `unit` | numbers of components that look like degrees or millimetres |
 //! | `rotation` | axes that are parallel, in the default pose or inside a range |
 //! | `place` | joints and markers far from their segment, markers at the same point |
+//! | `marker` | markers on ground, or on a segment of another body part or side |
 //! | `closure` | loops that are open in the default pose |
 //! | `names` | names that differ by case or spaces only |
 //! | `symmetry` | left against right |
@@ -28,8 +32,10 @@
 mod circle;
 mod closure;
 mod coupling;
+mod depend;
 mod domain;
 mod limit;
+mod marker;
 pub mod motion;
 mod names;
 mod place;
@@ -37,9 +43,13 @@ mod range;
 mod reach;
 mod rotation;
 mod symmetry;
+mod unit;
+mod wiring;
 
 pub use circle::circles;
 use condyle_diagnostics::{Diagnostic, Severity, Subject, listed};
+use condyle_model::component::{Component, Law, Signal};
+use condyle_model::model::ComponentId;
 use condyle_model::model::{CROSSING_RANGE, DEFAULT_OUTSIDE_RANGE, LOOKS_LIKE_DEGREES};
 use condyle_model::{CoordinateId, CoordinateKind, Mode, Model, Pose, Program};
 use reach::Reach;
@@ -83,8 +93,12 @@ pub fn check(model: &Model, warnings: &[Diagnostic]) -> Vec<Diagnostic> {
     coupling::check(&subject, &mut findings);
     rotation::check(&subject, &mut findings);
     place::check(&subject, &mut findings);
+    marker::check(&subject, &mut findings);
     closure::check(&subject, &mut findings);
     limit::check(&subject, &mut findings);
+    depend::check(&subject, &mut findings);
+    wiring::check(&subject, &mut findings);
+    unit::check(&subject, &mut findings);
     names::check(&subject, &mut findings);
     symmetry::check(&subject, &mut findings);
     if !subject.reach.finished() {
@@ -130,6 +144,60 @@ impl<'m> Inspected<'m> {
 
     fn kind(&self, id: CoordinateId) -> CoordinateKind {
         self.model.coordinate(id).kind
+    }
+
+    /// What a signal measures: of a coordinate its kind; of an output what it passes on, or what it is used
+    /// as.
+    fn kind_of(&self, signal: Signal) -> CoordinateKind {
+        let mut signal = signal;
+        // As deep as components follow each other; a model has no circles.
+        for _ in 0..self.model.components().len() + 1 {
+            let Signal::Output(id, output) = signal else { break };
+            let component = &self.model.components()[id.index()];
+            match &component.law {
+                Law::Angles(_) => return CoordinateKind::Rotation,
+                law if law.bounds() => match component.inputs.get(output as usize) {
+                    Some(&passed) => signal = passed,
+                    None => return CoordinateKind::Other,
+                },
+                _ => return self.used_as(signal),
+            }
+        }
+        match signal {
+            Signal::Coordinate(id) => self.kind(id),
+            _ => CoordinateKind::Other,
+        }
+    }
+
+    /// What an output is used as: an angle, a distance, the value of a coordinate, or something else.
+    fn used_as(&self, signal: Signal) -> CoordinateKind {
+        for component in self.model.components() {
+            let kind = match component.law {
+                Law::Rotate(_) | Law::Pivot(_) => CoordinateKind::Rotation,
+                Law::Cone(_) if !component.at("angles").is_empty() => CoordinateKind::Rotation,
+                Law::Translate(_) => CoordinateKind::Translation,
+                _ => continue,
+            };
+            if component.values().any(|input| input == signal) {
+                return kind;
+            }
+        }
+        let mut coordinates = self.model.coordinates().iter();
+        let follower = coordinates.find(|c| c.follows == Some(signal));
+        follower.map_or(CoordinateKind::Other, |c| c.kind)
+    }
+
+    /// The least and the greatest value that a signal takes while its leaders run through their ranges.
+    fn range_of(&self, signal: Signal) -> Option<(f64, f64)> {
+        let taken = self.reach.taken(signal)?;
+        let [least, greatest] = taken.extremes()?;
+        Some((least.1, greatest.1))
+    }
+
+    /// One output of a component, as others read it.
+    fn output(&self, component: &Component, output: usize) -> Option<Signal> {
+        let same = |id: &ComponentId| std::ptr::eq(&self.model.components()[id.index()], component);
+        self.model.component_ids().find(same).map(|id| Signal::Output(id, output as u32))
     }
 
     /// A value of a coordinate with its unit.

@@ -2,9 +2,10 @@
 
 use super::{Inspected, amount, finding, length, real_range};
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
+use condyle_math::Vec3;
 use condyle_model::CoordinateKind;
-use condyle_model::component::{Component, Signal};
-use condyle_model::limit::Limit;
+use condyle_model::component::{Component, Law, Signal};
+use condyle_model::limit::{Cone, Limit};
 use condyle_model::model::ComponentId;
 
 /// A posture within this distance, in radians, of a discontinuity of the projection is reported:
@@ -23,6 +24,9 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     for component in subject.model.components() {
         if let Some(limit) = component.law.limit() {
             findings.extend(jump(subject, component, limit));
+        }
+        if let Law::Cone(cone) = &component.law {
+            findings.extend(complement(subject, component, &cone.cone));
         }
     }
     for id in subject.model.unused_components() {
@@ -46,6 +50,43 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
             ));
         }
     }
+}
+
+/// Directions at which a cone is sampled.
+const DIRECTIONS: usize = 2000;
+
+/// A cone that allows more than this part of all directions, and turned round would allow less, was
+/// likely given a direction at rest on the wrong side of its points.
+const NEARLY_ALL: f64 = 2.0 / 3.0;
+
+/// A cone that allows what lies outside its points.
+fn complement(subject: &Inspected<'_>, component: &Component, cone: &Cone) -> Option<Diagnostic> {
+    // Directions spread evenly over the sphere (Fibonacci's spiral).
+    let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
+    let inside = (0..DIRECTIONS).filter(|&i| {
+        let y = 1.0 - (2 * i + 1) as f64 / DIRECTIONS as f64;
+        let (s, c) = (golden * i as f64).sin_cos();
+        let across = (1.0 - y * y).sqrt();
+        cone.contains(Vec3::new(c * across, y, s * across))
+    });
+    let part = inside.count() as f64 / DIRECTIONS as f64;
+    let middle =
+        cone.points().iter().fold(Vec3::ZERO, |sum, point| sum + point.direction.normalized());
+    if part <= NEARLY_ALL || middle.dot(cone.rest()) >= 0.0 {
+        return None;
+    }
+    Some(finding(
+        Severity::Warning,
+        "lint/cone-outside",
+        [subject.model.component_subject(component)],
+        format!(
+            "cone `{}` allows {} % of all directions: `rest` is on the far side of its points, so that \
+             what lies outside them is allowed",
+            component.name,
+            (100.0 * part).round()
+        ),
+        "give as `rest` the direction of the bone in the middle of the points",
+    ))
 }
 
 /// A component on which no segment, coordinate or limit depends.

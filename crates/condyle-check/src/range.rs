@@ -62,7 +62,7 @@ fn size(subject: &Inspected<'_>, id: CoordinateId) -> Option<Diagnostic> {
             "lint/degrees",
             [Subject::Coordinate(key.clone())],
             format!("the range of `{key}`, {text} radians, looks like degrees"),
-            "angles of a model are in radians: divide by 57.29578",
+            "angles are in radians: write `angles = \"deg\"` at the top of a text, or divide by 57.29578",
         ));
     }
     let far = limits.iter().any(|l| l.is_finite() && l.abs() > NO_LIMIT);

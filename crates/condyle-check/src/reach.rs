@@ -54,7 +54,14 @@ impl Taken {
 fn reads(model: &Model, source: Signal) -> Vec<Signal> {
     match source {
         Signal::Coordinate(id) => model.coordinate(id).follows.into_iter().collect(),
-        Signal::Output(id, _) => model.components()[id.index()].values().collect(),
+        Signal::Output(id, _) => {
+            let component = &model.components()[id.index()];
+            match component.law {
+                // In open mode the driver of a bound does not matter.
+                Law::Depend(_) => component.values().take(1).collect(),
+                _ => component.values().collect(),
+            }
+        }
         Signal::Segment(_) => vec![],
     }
 }
@@ -147,11 +154,12 @@ impl<'m> Reach<'m> {
                         Law::Combine(combine) => {
                             combine.function.apply_to(component.inputs.iter().map(|&s| of(s)))
                         }
-                        // In open mode a cone passes its angles: each of these is taken.
+                        // In open mode a limit passes what it bounds: each of these is taken.
                         Law::Cone(_) => component
                             .at("angles")
                             .get(output as usize)
                             .map_or(f64::NAN, |&angle| of(angle)),
+                        law if law.bounds() => input(output as usize),
                         _ => f64::NAN,
                     }
                 }

@@ -126,7 +126,9 @@ fn singular(subject: &Inspected<'_>, set: &str, triple: &[Turn]) -> Option<Diagn
     hits.sort_by(|a, b| a.abs().total_cmp(&b.abs()).then(b.total_cmp(a)));
     let shown = match hits[..] {
         [] => return None,
-        [one, other, ..] if (one + other).abs() < 0.1 => format!("±{}", super::rounded(one, 1)),
+        [one, other, ..] if (one + other).abs() < 0.1 => {
+            format!("±{}", super::rounded(one.abs(), 1))
+        }
         [one, ..] => super::rounded(one, 1),
     };
     let names = names(subject, &[a, m, c]);

@@ -9,7 +9,7 @@
 use super::{Inspected, finding, length, real_range};
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
 use condyle_math::Vec3;
-use condyle_model::{CoordinateId, CoordinateKind, Jacobian, Model, Pose, SegmentId};
+use condyle_model::{CoordinateId, CoordinateKind, Jacobian, Model, Pose, SegmentId, UpAxis};
 use std::collections::HashMap;
 
 /// The joints of a scaled subject may well differ by a few millimetres.
@@ -42,8 +42,12 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
             motions.places(plane, &segments, findings);
             motions.axes(plane, &coordinates, findings)
         }
-        None => vec![None; coordinates.len()],
+        None => {
+            motions.one_side(&segments, findings);
+            vec![None; coordinates.len()]
+        }
     };
+    backwards(subject, &coordinates, &senses, findings);
     for (&pair, sense) in coordinates.iter().zip(&senses) {
         findings.extend(ranges(subject, pair, *sense));
     }
@@ -55,7 +59,7 @@ const SIDES: [[&str; 2]; 5] =
     [["r", "l"], ["R", "L"], ["right", "left"], ["Right", "Left"], ["RIGHT", "LEFT"]];
 
 /// Whether a name belongs to the right side, and the name on the other; none without a side.
-fn mirrored(name: &str) -> Option<(bool, String)> {
+pub(super) fn mirrored(name: &str) -> Option<(bool, String)> {
     let mut right = None;
     let mut text = String::with_capacity(name.len());
     for piece in name.split_inclusive(['_', '.', '-', ' ', '/']) {
@@ -217,6 +221,34 @@ impl<'s> Motions<'s> {
         let (r, l) = (self.place(right), self.place(left));
         let gap = (reflected(r, plane) - l).norm();
         (gap > PLACES_DIFFER.max(0.05 * r.norm())).then_some(gap)
+    }
+
+    /// Pairs on the same parent at the same place, away from the middle, where no plane is known.
+    fn one_side(&self, pairs: &[[SegmentId; 2]], findings: &mut Vec<Diagnostic>) {
+        let model = self.subject.model;
+        // The lateral axis of a body that stands: z where y is up, y where z is.
+        let lateral = match model.up() {
+            UpAxis::Y => 2,
+            UpAxis::Z => 1,
+        };
+        for &[right, left] in pairs {
+            let (r, l) = (self.place(right), self.place(left));
+            let same_parent = model.segment(right).parent == model.segment(left).parent;
+            if !same_parent || (r - l).norm() > 1e-3 || r.to_array()[lateral].abs() < 0.01 {
+                continue;
+            }
+            let names = [right, left].map(|id| model.segment(id).name.clone());
+            findings.push(finding(
+                Severity::Warning,
+                "lint/same-side",
+                names.clone().map(Subject::Segment),
+                format!(
+                    "the joints of `{}` and `{}` are at the same place in their parent, both on one side",
+                    names[0], names[1]
+                ),
+                "reverse the sign of the lateral coordinate of the left one",
+            ));
+        }
     }
 
     fn places(&self, plane: usize, pairs: &[[SegmentId; 2]], findings: &mut Vec<Diagnostic>) {
@@ -381,6 +413,50 @@ fn ranges(
         message,
         "give both sides the same range, unless they were measured on a subject",
     ))
+}
+
+/// Left coordinates that count the other way than their mirror image, beside others that do not.
+fn backwards(
+    subject: &Inspected<'_>,
+    pairs: &[[CoordinateId; 2]],
+    senses: &[Option<bool>],
+    findings: &mut Vec<Diagnostic>,
+) {
+    let rotations = || {
+        let known = pairs.iter().zip(senses).filter_map(|(pair, sense)| Some((pair, (*sense)?)));
+        known.filter(|(pair, _)| subject.kind(pair[0]) == CoordinateKind::Rotation)
+    };
+    // Where every axis counts alike on both sides of the world, that is how the model was made.
+    if !rotations().any(|(_, sense)| sense) {
+        return;
+    }
+    // Ranges say what is meant, unless they reach equally far to both sides; they have a rule of their own.
+    let meant = |&[right, left]: &[CoordinateId; 2]| {
+        let ranges = [right, left].map(|id| real_range(subject.model, id));
+        ranges
+            .iter()
+            .all(|range| range.is_some_and(|(low, high)| (low + high).abs() > RANGES_DIFFER))
+    };
+    let odd: Vec<String> = rotations()
+        .filter(|(pair, sense)| !sense && !meant(pair))
+        .map(|(pair, _)| subject.key(pair[1]))
+        .collect();
+    if odd.is_empty() {
+        return;
+    }
+    findings.push(finding(
+        Severity::Warning,
+        "lint/not-mirrored",
+        odd.iter().cloned().map(Subject::Coordinate),
+        format!(
+            "the left side is no mirror image of the right: {} turn{} to the same side of the body as on the \
+             right, not inward or outward alike",
+            super::listed(&odd),
+            if odd.len() == 1 { "s" } else { "" }
+        ),
+        "turn the axis over on the left (a mirrored axis of rotation is -D times the right one), or let \
+         `mirror` write that side",
+    ));
 }
 
 /// One note about all defaults that differ: the default pose may be in mid-stride.

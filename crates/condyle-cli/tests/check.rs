@@ -252,3 +252,48 @@ fn real_motions_hold_or_say_where_they_do_not() {
     assert_eq!(knee["worst"]["frame"], 14);
     assert_eq!(knee["worst"]["nearest"], 0.0);
 }
+
+#[test]
+fn a_text_includes_a_shipped_model_by_name_and_changes_one_limit() {
+    let folder = Folder::new("check-include");
+    let text = "condyle = 1\nkind = \"model\"\nangles = \"deg\"\ninclude = [\"knee\"]\n\
+                [joint_set.knee_r.coordinate]\nknee_angle_r = { range = [-5, 135] }\n";
+    folder.write("mine.toml", text);
+    let answer = json(&folder.condyle(&["info", "mine.toml", "--json"]), 0);
+    near(&answer["coordinates"][0]["range"][1], 135f64.to_radians());
+    near(&answer["coordinates"][0]["range"][0], -5f64.to_radians());
+    // What it reads and limits is shown: the shin's slide along the thigh follows the angle.
+    let shoulder = json(&folder.condyle(&["info", "shoulder", "--json"]), 0);
+    let sets = shoulder["networks"].as_array().expect("networks");
+    let components: Vec<&Value> =
+        sets.iter().flat_map(|set| set["components"].as_array().expect("components")).collect();
+    let contact = components.iter().find(|c| c["kind"] == "contact").expect("the scapula's");
+    assert_eq!(contact["inputs"]["surface"], "thorax");
+    assert!(contact["limit"]["radii"][1].as_f64().expect("metres") > 0.1);
+    assert!(components.iter().any(|c| c["kind"] == "cone" && c["limit"]["points"].is_array()));
+    let said = text_of(&folder, &["info", "shoulder"]);
+    assert!(
+        said.contains("limits of several together") && said.contains("bounded from below"),
+        "{said}"
+    );
+}
+
+fn text_of(folder: &Folder, arguments: &[&str]) -> String {
+    text(&folder.condyle(arguments), 0)
+}
+
+#[test]
+fn a_document_that_moves_takes_its_includes_along() {
+    let folder = Folder::new("convert-include");
+    let part = "condyle = 1\nkind = \"model\"\n[segment.shank]\nparent = \"thigh\"\n";
+    let whole = "condyle = 1\nkind = \"model\"\n# the shank is elsewhere\ninclude = [\"parts/shank.toml\"]\n\
+                 [segment.thigh]\n";
+    folder.write("rig/parts/shank.toml", part).write("rig/leg.toml", whole);
+    std::fs::create_dir_all(folder.path().join("other/deep")).expect("a folder");
+    assert_eq!(folder.condyle(&["convert", "rig/leg.toml", "other/deep/leg.toml"]).code, 0);
+    let moved = std::fs::read_to_string(folder.path().join("other/deep/leg.toml")).expect("a file");
+    assert!(moved.contains("include = [\"../../rig/parts/shank.toml\"]"), "{moved}");
+    assert!(moved.contains("# the shank is elsewhere"));
+    let answer = json(&folder.condyle(&["info", "other/deep/leg.toml", "--json"]), 0);
+    assert_eq!(answer["segments"].as_array().expect("segments").len(), 2);
+}

@@ -162,7 +162,7 @@ pub fn content(path: &Path, wanted: Option<ContentKind>) -> Result<Read<Content>
     };
     let found = named.or_else(|| Format::of_bytes(&bytes).filter(fits));
     let format = found.ok_or_else(no_format)?;
-    let mut include = |name: &str| included(&beside(path, name));
+    let mut include = |name: &str| included(path, name);
     let read = format.read(&bytes, &mut include).map_err(|error| {
         // Only the text of a document is shown beside its errors.
         let document = format.id == Id::Document;
@@ -197,10 +197,26 @@ fn with_tasks(path: &Path, mut read: Read<Content>) -> Result<Read<Content>, Ope
     Ok(read)
 }
 
-/// The text of a file that another includes.
-fn included(path: &Path) -> Result<String, String> {
-    let bytes = bytes(path).map_err(|error| match error.cause {
-        Cause::Io(error) => error.to_string(),
+/// The text that a file includes: another file, from its own place, or else a shipped model by its
+/// name or a part of one.
+fn included(from: &Path, name: &str) -> Result<String, String> {
+    let path = beside(from, name);
+    #[cfg(feature = "document")]
+    if !path.exists()
+        && let Some(text) = shipped::includable(name)
+    {
+        return Ok(text.to_owned());
+    }
+    let bytes = bytes(&path).map_err(|error| match error.cause {
+        Cause::Io(error) => {
+            #[cfg(feature = "document")]
+            if let Some(near) = nearest(name, shipped::names()) {
+                return format!(
+                    "{error}; the shipped model `{near}` is included by its name alone"
+                );
+            }
+            error.to_string()
+        }
         _ => error.to_string(),
     })?;
     utf8(&bytes).map(str::to_owned).map_err(|error| error.to_string())

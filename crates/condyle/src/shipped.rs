@@ -120,9 +120,15 @@ fn with(name: &str, note: &mut dyn FnMut(&str)) -> Result<Read<Document>, OpenEr
 /// The text of an included file: another shipped model, or a part.
 #[cfg(feature = "document")]
 fn included(file: &str) -> Result<&'static str, String> {
-    let part = || PARTS.iter().find(|(path, _)| *path == file).map(|(_, text)| *text);
-    let model = file.strip_suffix(".toml").and_then(text);
-    model.or_else(part).ok_or_else(|| format!("no text `{file}` is shipped"))
+    includable(file).ok_or_else(|| format!("no text `{file}` is shipped"))
+}
+
+/// What a document can include without a file: a shipped model by its name, with or without `.toml`,
+/// and the parts that shipped models include.
+#[cfg(feature = "document")]
+pub(crate) fn includable(name: &str) -> Option<&'static str> {
+    let part = || PARTS.iter().find(|(path, _)| *path == name).map(|(_, text)| *text);
+    text(name.strip_suffix(".toml").unwrap_or(name)).or_else(part)
 }
 
 /// The word that a path is where it is no file, but may be the name of a shipped model: one without

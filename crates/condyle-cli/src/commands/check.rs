@@ -6,17 +6,19 @@ use crate::output::{self, columns};
 use clap::Args;
 
 use condyle::check::motion::MotionCheck;
+use condyle::formats::document::Document;
+use condyle::formats::{Content, ContentKind, Format, Id};
 use condyle::open::{Cause, OpenError};
-use condyle::{CoordinateKind, Diagnostic, Model, Severity, Subject, check, open};
+use condyle::{CoordinateKind, Diagnostic, Model, Read, Severity, Subject, Table, check, open};
 use serde_json::{Value, json};
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(crate) struct Check {
     /// The model: a file, or the name of a shipped one.
     model: PathBuf,
-    /// A motion whose columns are named after coordinates.
+    /// A motion whose columns are named after coordinates, or poses (.json) as `fk` takes them.
     motion: Option<PathBuf>,
     /// One JSON document on standard output, in radians and metres.
     #[arg(long)]
@@ -25,16 +27,29 @@ pub(crate) struct Check {
 
 impl Check {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
-        let read = match open::model(&self.model) {
+        let read = match open::content(&self.model, Some(ContentKind::Model)) {
             Ok(read) => read,
             Err(error) => return self.contradictory(error),
         };
-        let model = &read.value;
+        let document = match read.value {
+            Content::Document(document) => document,
+            Content::Model(model) => Document::of(model),
+            _ => return Err(Failure::new("the file holds no model")),
+        };
+        let model = &document.model;
         let mut findings = check::check(model, &read.warnings);
+        findings.iter_mut().for_each(|finding| document.locate(finding));
         let mut motion = None;
         if let Some(path) = &self.motion {
-            let table = open::table(path)?;
+            let (table, separate) = match poses(path, model)? {
+                Some(poses) => (poses, true),
+                None => (open::table(path)?, false),
+            };
             let mut checked = check::motion::check(model, &table.value);
+            if separate {
+                // Poses do not follow each other in time.
+                checked.forget_jumps();
+            }
             checked.findings.splice(0..0, table.warnings);
             motion = Some(checked);
         }
@@ -82,6 +97,15 @@ impl Check {
         }
         Ok(Outcome::DoesNotHold)
     }
+}
+
+/// Poses as a motion, or `None` for a file of another format.
+fn poses(path: &Path, model: &Model) -> Result<Option<Read<Table>>, Failure> {
+    if Format::of_ending(&open::ending(path)).is_none_or(|format| format.id != Id::Poses) {
+        return Ok(None);
+    }
+    let Read { value: poses, warnings } = open::poses(path, model)?;
+    Ok(Some(Read { value: poses.motion.to_table(model, "poses"), warnings }))
 }
 
 fn outcome(broken: bool) -> Outcome {
@@ -193,6 +217,28 @@ fn motion_json(model: &Model, motion: &MotionCheck) -> Value {
             "value": d.value,
             "expected": d.expected,
         })).collect::<Vec<_>>(),
+        "limits": motion.broken.iter().map(|b| {
+            let component = &model.components()[b.component.index()];
+            json!({
+                "limit": component.name,
+                "joint_set": model.joint_sets()[component.joint_set.index()].name,
+                "kind": component.law.kind().name,
+                "frames": b.frames,
+                "runs": b.runs,
+                "frame": b.frame,
+                "time": b.time,
+                "by": b.by,
+                "unit": if b.kind == CoordinateKind::Rotation { "rad" } else { "m" },
+                "gaps": b.gaps,
+                "nearest": b.nearest.iter().map(|near| {
+                    let one = |numbers: &[f64]| match numbers {
+                        [number] => json!(number),
+                        all => json!(all),
+                    };
+                    json!({ "name": near.name, "value": one(&near.value), "nearest": one(&near.valid) })
+                }).collect::<Vec<_>>(),
+            })
+        }).collect::<Vec<_>>(),
         "loops": motion.open_loops.iter().map(|o| json!({
             "name": o.name,
             "frames": o.frames,
@@ -206,6 +252,7 @@ fn motion_json(model: &Model, motion: &MotionCheck) -> Value {
             "frame": j.frame,
             "time": j.time,
             "by": j.by,
+            "turned": j.turned,
             "wrap": j.wrap,
         })).collect::<Vec<_>>(),
         "missing": motion.missing.iter().map(|&id| key(id)).collect::<Vec<_>>(),

@@ -11,7 +11,7 @@ use condyle::open::Cause;
 use condyle::{
     AngleUnit, Interpolation, Mode, Model, Motion, Program, Table, encode, legal, open, shipped,
 };
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(crate) struct Convert {
@@ -141,7 +141,7 @@ impl Convert {
     fn document(&self, document: Document) -> Result<String, Failure> {
         match shipped::asked_for(&self.input) {
             Some(name) => Ok(shipped::standalone(name)?),
-            None => Ok(document.text),
+            None => Ok(moved(&document.text, &self.input, &self.output)),
         }
     }
 
@@ -176,12 +176,18 @@ impl Convert {
             }
         };
         if self.limits == Limits::On {
-            let changed = legal::keep(&model, &mut motion);
-            if changed > 0 {
+            let legal::Kept { solved, lost } = legal::keep(&model, &mut motion);
+            let all = motion.frames.len();
+            if solved > 0 {
                 eprintln!(
-                    "note: {changed} of {} frames broke limits between segments: theirs is the nearest \
-                     legal pose",
-                    motion.frames.len()
+                    "note: {solved} of {all} frames broke limits between segments: theirs is the nearest \
+                     legal pose"
+                );
+            }
+            if lost > 0 {
+                eprintln!(
+                    "warning: {lost} of {all} frames are not reproduced by their coordinates alone: a limit \
+                     acts on what several of them make together; pose the file with `--limits on`"
                 );
             }
         }
@@ -226,6 +232,51 @@ impl Convert {
         let name = self.output.file_name().unwrap_or_default().to_string_lossy();
         Ok(trc::write(&recording, &name)?.into_bytes())
     }
+}
+
+/// A document for another folder: what it includes is found from there.
+fn moved(text: &str, from: &Path, to: &Path) -> String {
+    let folder = |path: &Path| {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        std::path::absolute(folder.unwrap_or(Path::new("."))).unwrap_or_default()
+    };
+    // Standard output is read from where the command runs.
+    let (from, to) = (folder(from), folder(if to == Path::new("-") { Path::new("x") } else { to }));
+    if from == to {
+        return text.to_owned();
+    }
+    let mut text = text.to_owned();
+    let mut includes = document::includes(&text);
+    includes.sort_by_key(|(place, _)| std::cmp::Reverse(place.start));
+    for (place, path) in includes {
+        let file = from.join(&path);
+        // A shipped model is included by its name, an absolute path from anywhere.
+        if Path::new(&path).is_absolute() || !file.exists() {
+            continue;
+        }
+        text.replace_range(place, &format!("{:?}", relative(&to, &file)));
+    }
+    text
+}
+
+/// A path to a file from a folder, both absolute, with forward slashes.
+fn relative(folder: &Path, file: &Path) -> String {
+    let plain = |path: &Path| -> Vec<String> {
+        let mut parts: Vec<String> = vec![];
+        for part in path.components() {
+            match part {
+                Component::ParentDir => _ = parts.pop(),
+                Component::CurDir => {}
+                part => parts.push(part.as_os_str().to_string_lossy().into_owned()),
+            }
+        }
+        parts
+    };
+    let (folder, file) = (plain(folder), plain(file));
+    let shared = folder.iter().zip(&file).take_while(|(a, b)| a == b).count();
+    let up = std::iter::repeat_n("..", folder.len() - shared);
+    let down = file[shared..].iter().map(String::as_str);
+    up.chain(down).collect::<Vec<_>>().join("/")
 }
 
 /// A table in another format, number by number, with the unit of its angles stated.

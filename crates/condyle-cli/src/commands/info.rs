@@ -1,6 +1,7 @@
 //! `condyle info`: the contents of a file.
 
 mod model;
+mod network;
 mod recording;
 mod setup;
 mod table;

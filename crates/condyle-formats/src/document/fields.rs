@@ -5,9 +5,21 @@ use super::number::Constant;
 use super::template::Given;
 use super::texts::{Angles, Name, Spot, Texts};
 use super::tree::{Entry, Node, Value};
-use condyle_diagnostics::did_you_mean;
-use condyle_math::{Affine, EulerOrder, Mat3, Vec3};
+use super::words;
+use condyle_diagnostics::{Severity, did_you_mean};
+use condyle_math::{Affine, EulerOrder, Mat3, Quat, Vec3};
 use std::collections::HashMap;
+
+/// A matrix is a rotation if M'M is the identity but for this.
+const EXACT: f64 = 1e-6;
+/// It is a rotation with few digits if it is but for this.
+const ROUNDED: f64 = 2e-3;
+
+/// A number with at most four decimals.
+fn shown(number: f64) -> String {
+    let text = format!("{number:.4}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
 
 /// Reads values of a tree and reports what is wrong with them.
 pub(super) struct Reader<'s> {
@@ -72,7 +84,10 @@ impl Reader<'_> {
 
     pub(super) fn unknown_key(&mut self, key: &Name, label: &str, known: &[&str]) {
         let all = || format!("known keys are: {}", known.join(", "));
-        let help = did_you_mean(&key.text, known.iter().copied(), all);
+        let help = match words::key(label, &key.text) {
+            Some(help) => help.to_owned(),
+            None => did_you_mean(&key.text, known.iter().copied(), all),
+        };
         let message = match label {
             "" => format!("unknown key `{}`", key.text),
             label => format!("unknown key `{}` in [{label}]", key.text),
@@ -121,6 +136,13 @@ impl Reader<'_> {
     pub(super) fn text(&mut self, node: &Node, label: &str) -> Option<Name> {
         match &node.value {
             Value::Text(text) => Some(Name { text: text.clone(), spot: node.spot }),
+            Value::List(_) => {
+                let message = format!("`{label}` is a list");
+                let help = "give one name; a sum of several scalars is a component of kind combine, \
+                            a product of transforms one of kind product";
+                self.texts.error(node.spot, "document/type", message, help);
+                None
+            }
             _ => {
                 self.wrong(node, label, "a string");
                 None
@@ -175,14 +197,34 @@ impl Reader<'_> {
             Ok(numbers) => Some(numbers),
             Err(_) => {
                 let message = format!("`{label}` has {count} numbers");
-                self.length(node.spot, message, format!("give {N}"));
+                let point = if count > N { "; decimals have a point, as in 0.42" } else { "" };
+                self.length(node.spot, message, format!("give {N}{point}"));
                 None
             }
         }
     }
 
     pub(super) fn vector(&mut self, node: &Node, label: &str) -> Option<Vec3> {
+        if let Value::Text(text) = &node.value
+            && let Some(axis) = words::axis(text)
+        {
+            let message = format!("`{label}` is a string");
+            self.texts.error(node.spot, "document/type", message, format!("write {axis:?}"));
+            return None;
+        }
         self.some::<3>(node, label).map(Vec3::from)
+    }
+
+    /// A vector that has a direction.
+    pub(super) fn has_direction(&mut self, node: &Node, label: &str) -> Option<Vec3> {
+        let vector = self.vector(node, label)?;
+        if vector.norm() > 1e-9 {
+            return Some(vector);
+        }
+        let message = format!("`{label}` has length 0");
+        let help = "give a direction, such as [0, 0, 1]";
+        self.texts.error(node.spot, "model/axis", message, help);
+        None
     }
 
     /// A number with a default.
@@ -234,7 +276,9 @@ impl Reader<'_> {
             let rows: Vec<Vec3> =
                 self.vectors(node, matrix).into_iter().flatten().flatten().collect();
             match rows[..] {
-                [x, y, z] => linear = Mat3::from_columns(x, y, z).transpose(),
+                [x, y, z] => {
+                    linear = self.turn_of(node, matrix, Mat3::from_columns(x, y, z).transpose());
+                }
                 _ => {
                     let message = format!("`{matrix}` has {} rows", rows.len());
                     self.length(node.spot, message, "give 3 rows of 3");
@@ -242,6 +286,43 @@ impl Reader<'_> {
             }
         }
         Affine::new(linear, point)
+    }
+
+    /// A matrix that must be a rotation; a rounded one is made one. After an error the identity.
+    fn turn_of(&mut self, node: &Node, label: &str, matrix: Mat3) -> Mat3 {
+        let product = matrix.transpose() * matrix;
+        let off = (0..9).map(|i| (product.at(i / 3, i % 3) - f64::from(i % 4 == 0)).abs());
+        let off = off.fold(0.0, f64::max);
+        if off < EXACT && matrix.determinant() > 0.0 {
+            return matrix;
+        }
+        let help = "give rows of length 1 at right angles, or three angles as a turn";
+        let why = match matrix.determinant() {
+            det if !(det.abs() > 1e-6) => ("is flat: its determinant is 0".to_owned(), help),
+            det if det < 0.0 => (
+                format!("is a reflection, not a rotation: its determinant is {}", shown(det)),
+                "exchange two rows, or change the sign of one",
+            ),
+            _ if off < ROUNDED => {
+                let message = format!("`{label}` is off a rotation by {off:.1e} and is made one");
+                let said =
+                    self.texts.said(node.spot, Severity::Warning, "document/rotation", message);
+                self.texts.warn(node.spot, said.with_help("give more digits"));
+                return Quat::from_mat3(matrix).normalized().to_mat3();
+            }
+            det => {
+                let rows = matrix.transpose();
+                let lengths = [rows.x, rows.y, rows.z].map(|row| shown(row.norm()));
+                let why = format!(
+                    "is not a rotation: its rows have the lengths {}, its determinant is {}",
+                    lengths.join(", "),
+                    shown(det)
+                );
+                (why, help)
+            }
+        };
+        self.texts.error(node.spot, "model/rotation", format!("`{label}` {}", why.0), why.1);
+        Mat3::IDENTITY
     }
 
     pub(super) fn order(&mut self, node: &Node, label: &str) -> Option<EulerOrder> {
@@ -267,16 +348,30 @@ impl Reader<'_> {
         self.required(fields, key, wanted).and_then(|node| self.vector(node, key))
     }
 
+    /// A direction that must be there.
+    pub(super) fn required_direction(
+        &mut self,
+        fields: &Fields<'_>,
+        key: &str,
+        wanted: &str,
+    ) -> Option<Vec3> {
+        self.required(fields, key, wanted).and_then(|node| self.has_direction(node, key))
+    }
+
     /// The factor from a named unit to radians or metres.
     pub(super) fn unit_of(&mut self, node: &Node, key: &str) -> Option<f64> {
         let name = self.text(node, key)?;
         match name.text.as_str() {
             "rad" | "m" => Some(1.0),
             "deg" => Some(std::f64::consts::PI / 180.0),
+            "cm" => Some(0.01),
             "mm" => Some(0.001),
             other => {
                 let message = format!("unknown unit `{other}`");
-                let help = "units are: rad, deg, m, mm";
+                let help = match words::unit(other) {
+                    Some(unit) => format!("did you mean `{unit}`?"),
+                    None => "units are: rad, deg, m, cm, mm".to_owned(),
+                };
                 self.texts.error(name.spot, "document/unit", message, help);
                 None
             }

@@ -18,6 +18,18 @@ impl Reader<'_> {
     pub(super) fn function(&mut self, node: &Node, label: &str) -> Option<Function> {
         if !matches!(node.value, Value::Table(_)) {
             let wanted = "a number, or a table such as { linear = [1, 0] }";
+            if let Value::List(list) = &node.value {
+                let message = format!("`{label}` is a list");
+                let points = list.iter().all(|point| matches!(point.value, Value::List(_)));
+                let help = match points && !list.is_empty() {
+                    true => {
+                        "write { lines = [...] } for straight lines through these points, or { spline = [...] }"
+                    }
+                    false => "give a number, or a table such as { linear = [1, 0] }",
+                };
+                self.texts.error(node.spot, "document/type", message, help);
+                return None;
+            }
             if !matches!(node.value, Value::Number(_) | Value::Text(_)) {
                 self.wrong(node, label, wanted);
                 return None;

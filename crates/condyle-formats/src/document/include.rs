@@ -3,8 +3,11 @@
 use super::Form;
 use super::head;
 use super::texts::{Name, Spot, Texts};
-use super::tree::{Entry, Node, Value, parse};
+use super::tree::{Entry, Node, Value, parse, too_deep};
 use std::collections::HashMap;
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
 /// How deep includes may nest, and how many texts may be included in all.
 const MOST_NESTED: usize = 8;
@@ -47,8 +50,8 @@ impl Loader<'_> {
             if let Some(more) = self.included(name, &wanted, line) {
                 let (constants, more) =
                     more.into_iter().partition(|entry| entry.key.text == "constants");
-                merge(self.texts, &mut entries, more, false);
-                merge(self.texts, &mut entries, constants, true);
+                merge(self.texts, &mut entries, more, Keep::Given { by: file });
+                merge(self.texts, &mut entries, constants, Keep::First);
             }
         }
         self.open.pop();
@@ -129,11 +132,47 @@ fn beside(from: &str, name: &str) -> String {
     parts.join("/")
 }
 
-/// Adds the entries of an included text. Tables are merged; any other key may be given once.
-/// Recursive as deep as the trees are.
+/// The paths that a text includes itself, each with the bytes of its string in the text, quotes and all.
 ///
-/// With `ours`, used for constants, the value of the including text is kept where both give one.
-fn merge(texts: &mut Texts, into: &mut Vec<Entry>, more: Vec<Entry>, ours: bool) {
+/// None of a text that cannot be parsed.
+///
+/// ```
+/// use condyle_formats::document::includes;
+/// let text = "condyle = 1\nkind = \"model\"\ninclude = [\"hand.toml\"]\n";
+/// let (place, path) = &includes(text)[0];
+/// assert_eq!((&text[place.clone()], path.as_str()), ("\"hand.toml\"", "hand.toml"));
+/// ```
+#[must_use]
+pub fn includes(text: &str) -> Vec<(Range<usize>, String)> {
+    if too_deep(text).is_some() {
+        return vec![];
+    }
+    let (table, _) = DeTable::parse_recoverable(text);
+    let path = |value: &Spanned<DeValue<'_>>| match value.get_ref() {
+        DeValue::String(path) => Some((value.span(), path.to_string())),
+        _ => None,
+    };
+    match table.get_ref().get("include") {
+        None => vec![],
+        Some(value) => match value.get_ref() {
+            DeValue::Array(list) => list.iter().filter_map(path).collect(),
+            _ => path(value).into_iter().collect(),
+        },
+    }
+}
+
+/// Which value is kept where two texts give one.
+#[derive(Clone, Copy)]
+enum Keep {
+    /// That of the including text; two included texts that differ are an error.
+    Given { by: u32 },
+    /// That which is there already.
+    First,
+}
+
+/// Adds the entries of an included text: tables are merged, and what the including text gives itself
+/// stands in place of what is included. Recursive as deep as the trees are.
+fn merge(texts: &mut Texts, into: &mut Vec<Entry>, more: Vec<Entry>, keep: Keep) {
     let index: HashMap<String, usize> =
         into.iter().enumerate().map(|(i, e)| (e.key.text.clone(), i)).collect();
     for entry in more {
@@ -141,17 +180,24 @@ fn merge(texts: &mut Texts, into: &mut Vec<Entry>, more: Vec<Entry>, ours: bool)
             into.push(entry);
             continue;
         };
-        match (&mut into[known].node.value, entry.node.value) {
-            (Value::Table(known), Value::Table(more)) => merge(texts, known, more, ours),
+        let known = &mut into[known];
+        let ours = match keep {
+            Keep::Given { by } => known.key.spot.file == by,
+            Keep::First => true,
+        };
+        match (&mut known.node.value, entry.node.value) {
+            (Value::Table(known), Value::Table(more)) => merge(texts, known, more, keep),
             _ if ours => {}
             // Equal values are no conflict, such as one mirror repeated in several texts.
             (Value::Text(known), Value::Text(more)) if *known == more => {}
             (Value::Number(known), Value::Number(more)) if *known == more => {}
             _ => {
                 let key = &entry.key.text;
-                let message =
-                    format!("`{key}` is also given by the document that includes this one");
-                texts.error(entry.key.spot, "document/duplicate", message, "give it once");
+                let other = texts.line(known.key.spot);
+                let message = format!("`{key}` is also given by another included text ({other})");
+                let help =
+                    "give it in the including text, which is then kept, or in one of the two";
+                texts.error(entry.key.spot, "document/duplicate", message, help);
             }
         }
     }

@@ -38,8 +38,10 @@ mod template;
 mod tests;
 mod texts;
 mod tree;
+mod words;
 
 pub use head::{Kind, kind};
+pub use include::includes;
 pub use model::{Document, keys, read, read_with, write};
 pub use render::render;
 

@@ -142,6 +142,12 @@ impl Texts {
         said(&self.files, spot, severity, code, message)
     }
 
+    /// The place of a spot in the document itself. In an included text that is the line that includes
+    /// it, and the place there is given beside it, as `file:line:column: `.
+    pub(super) fn origin(&self, spot: Spot) -> (Place, String) {
+        origin(&self.files, spot)
+    }
+
     /// The line of a spot, with its file where that is an included one.
     pub(super) fn line(&self, spot: Spot) -> String {
         line(&self.files, spot)
@@ -237,13 +243,18 @@ fn said(
     code: &'static str,
     message: String,
 ) -> Diagnostic {
+    let (place, included) = origin(files, spot);
+    Diagnostic::new(severity, code, included + &message).at(place)
+}
+
+fn origin(files: &[File], spot: Spot) -> (Place, String) {
     let file = &files[spot.file as usize];
+    let own = place(files, spot);
     match file.included_at {
-        None => Diagnostic::new(severity, code, message).at(place(files, spot)),
+        None => (own, String::new()),
         Some(at) => {
-            let Place { line, column, .. } = place(files, spot);
-            let message = format!("{}:{line}:{column}: {message}", file.name);
-            Diagnostic::new(severity, code, message).at(place(files, at))
+            let Place { line, column, .. } = own;
+            (place(files, at), format!("{}:{line}:{column}: ", file.name))
         }
     }
 }

@@ -74,7 +74,11 @@ pub(super) fn parse(texts: &mut Texts, file: u32, text: &str) -> Option<Vec<Entr
         for error in errors {
             let start = error.span().map_or(0, |s| s.start);
             let message = error.message().lines().next().unwrap_or_default().to_owned();
-            texts.error(at(start), "document/syntax", message, "documents are written in TOML 1.0");
+            let help = match bare_word(&text[start.min(text.len())..]) {
+                Some(word) => format!("text stands in quotes: \"{word}\""),
+                None => "documents are written in TOML 1.0".to_owned(),
+            };
+            texts.error(at(start), "document/syntax", message, help);
         }
         return None;
     }
@@ -83,6 +87,15 @@ pub(super) fn parse(texts: &mut Texts, file: u32, text: &str) -> Option<Vec<Entr
         Value::Table(entries) => Some(entries),
         _ => None,
     }
+}
+
+/// A word where a value is expected that is none of TOML: a text without its quotes.
+fn bare_word(text: &str) -> Option<&str> {
+    let in_words = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | '.');
+    let word = &text[..text.find(|c| !in_words(c)).unwrap_or(text.len())];
+    let line = text[word.len()..].lines().next().unwrap_or_default().trim_start();
+    let ends = line.is_empty() || line.starts_with(['#', ',', '}', ']']);
+    (ends && word.starts_with(char::is_alphabetic)).then_some(word)
 }
 
 /// The bytes of a TOML text outside comments and strings, with their offsets. Of a string only its

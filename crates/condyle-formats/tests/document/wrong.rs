@@ -30,13 +30,16 @@ fn many_errors_come_at_once_in_the_order_of_the_text() {
 fn what_the_builder_finds_has_a_place() {
     let found = errors(
         "[segment.a]\n[joint_set.j.coordinate.q]\nrange = [2, 1]\n\
-         [joint_set.j.component.k.rotate]\nangle = \"q\"\naxis = [0, 0, 0]\n",
+         [joint_set.j.component.k.compensate]\nsegment = \"a\"\nancestors = [\"a\"]\n",
     );
     assert!(
         found[0].starts_with("line 4, column 25: coordinate `q` has a lower limit 2"),
         "{found:?}"
     );
-    assert!(found[1].starts_with("line 6, column 24: the axis of component `k`"), "{found:?}");
+    assert!(
+        found[1].starts_with("line 6, column 24: port `ancestors` of component `k`"),
+        "{found:?}"
+    );
     let circle = errors(
         "[joint_set.j.component.a.map]\ninput = \"b\"\nfunction = 1\n\
          [joint_set.j.component.b.map]\ninput = \"a\"\nfunction = 2\n",
@@ -47,14 +50,14 @@ fn what_the_builder_finds_has_a_place() {
 
 #[test]
 fn an_error_stands_at_its_own_component_among_names_that_differ_by_case() {
-    // `T` is whole and stands first; `t` has no axis. Both joint sets have such a pair.
+    // `T` is whole and stands first; `t` weighs too much. Both joint sets have such a pair.
     let found = errors(
-        "[joint_set.j.coordinate.q]\n[joint_set.j.component.T.rotate]\nangle = \"q\"\n\
-         axis = [0, 0, 1]\n[joint_set.j.component.t.rotate]\nangle = \"q\"\naxis = [0, 0, 0]\n\
-         [joint_set.J.coordinate.q]\n[joint_set.J.component.t.rotate]\nangle = \"q\"\n\
-         axis = [0, 0, 1]\n",
+        "[segment.a]\n[segment.b]\nparent = \"a\"\n\
+         [joint_set.j.component.T.compensate]\nsegment = \"b\"\nancestors = [\"a\"]\n\
+         [joint_set.j.component.t.compensate]\nsegment = \"b\"\nancestors = [\"a\"]\nweight = 2\n\
+         [joint_set.J.component.t.compensate]\nsegment = \"b\"\nancestors = [\"a\"]\n",
     );
-    let place = "line 7, column 24: the axis of component `t` (rotate) of joint set `j`";
+    let place = "line 9, column 24: component `t` (compensate) of joint set `j` has the weight 2";
     assert!(found.len() == 1 && found[0].starts_with(place), "{found:?}");
 }
 
@@ -182,10 +185,11 @@ fn what_both_sides_share_is_told_once() {
 #[test]
 fn a_component_is_found_in_its_own_joint_set() {
     let found = errors(
-        "[joint_set.a.coordinate.q]\n[joint_set.a.component.k.rotate]\nangle = \"q\"\n\
-         axis = [0, 0, 1]\n[joint_set.b.component.k.rotate]\nangle = \"a.q\"\naxis = [0, 0, 0]\n",
+        "[segment.a]\n[segment.b]\nparent = \"a\"\n\
+         [joint_set.a.component.k.compensate]\nsegment = \"b\"\nancestors = [\"a\"]\n\
+         [joint_set.b.component.k.compensate]\nsegment = \"b\"\nancestors = [\"a\"]\nweight = 2\n",
     );
-    assert!(found[0].starts_with("line 7, column 24: the axis of component `k`"), "{found:?}");
+    assert!(found[0].starts_with("line 9, column 24: component `k`"), "{found:?}");
 }
 
 #[test]

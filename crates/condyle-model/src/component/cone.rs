@@ -229,6 +229,11 @@ impl Limit for JointCone {
         })
     }
 
+    fn beyond(&self, numbers: &[f64]) -> f64 {
+        let rows = self.rows_at(numbers);
+        rows[..self.rows()].iter().map(|(value, _)| -value).fold(0.0, f64::max)
+    }
+
     fn margin(&self, numbers: &[f64]) -> f64 {
         let rotation = self.turned(numbers);
         if let Swinging::Directions(_) = self.of {

@@ -27,6 +27,7 @@
 //! to a solver as inequality rows. The range of a coordinate that follows others is always a row:
 //! clamping the follower would violate its dependency.
 
+mod behind;
 mod chain;
 mod closure;
 mod compile;
@@ -44,5 +45,5 @@ mod tape;
 pub use closure::ClosureRows;
 pub use jacobian::Jacobian;
 pub use pose::{ContactReport, Pose};
-pub use program::{Mode, Program, SizeMismatch};
+pub use program::{Bound, Mode, Program, SizeMismatch};
 pub use rotation_rate::log_rate;

@@ -1,7 +1,7 @@
 //! The buffers and results of one evaluation.
 
 use super::instruction::{Number, Turn};
-use super::program::Program;
+use super::program::{Bound, Program};
 use crate::model::{CoordinateId, Model, SegmentId};
 use condyle_math::{Affine, Mat3, Scalar};
 use std::ops::Range;
@@ -139,6 +139,12 @@ impl<S: Scalar> Pose<S> {
     /// value, and the rows of a cone are 0.
     pub fn limit_row(&self, row: usize) -> S {
         self.scalars[self.rows[row].index()]
+    }
+
+    /// The numbers that a limit bounds, as they were before it: scalars in the order of its inputs, or an
+    /// orientation as x, y, z, w. Of a dependency its driver follows; of a contact there are none.
+    pub fn bounded(&self, bound: &Bound) -> impl Iterator<Item = S> {
+        bound.numbers.iter().map(|number| self.scalars[number.index()])
     }
 
     /// The effective stored numbers of one coordinate.

@@ -1,9 +1,11 @@
 //! The compiled form of a model.
 
+use super::behind::Behind;
 use super::derivative_plan::DerivativePlan;
 use super::instruction::{Code, Frame, Number};
 use crate::model::{ComponentId, CoordinateId, Model, SegmentId};
 use std::fmt;
+use std::ops::Range;
 
 /// Whether limits are applied to the coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,8 +32,22 @@ pub struct Program {
     pub(super) limits: Vec<(Number, f64, f64)>,
     /// The limit rows that posed mode does not keep.
     pub(super) measured_rows: Vec<usize>,
+    pub(super) bounds: Vec<Bound>,
+    /// Coordinates whose limits act behind maps.
+    pub(super) behind: Vec<Behind>,
     pub(super) code: Code,
     pub(super) plan: DerivativePlan,
+}
+
+/// A component that limits something, in a compiled model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bound {
+    /// The component.
+    pub component: ComponentId,
+    /// Its limit rows.
+    pub rows: Range<usize>,
+    /// The numbers at its ports: what it bounds, and of a dependency the driver after it; none of a contact.
+    pub(super) numbers: Vec<Number>,
 }
 
 /// The error for a buffer of the wrong length.
@@ -121,6 +137,12 @@ impl Program {
     /// posed mode does not keep them.
     pub fn measured_limit_rows(&self) -> &[usize] {
         &self.measured_rows
+    }
+
+    /// The components that limit something, each with its rows; [`Pose::bounded`](super::Pose::bounded) gives
+    /// the numbers that they limit.
+    pub fn bounds(&self) -> &[Bound] {
+        &self.bounds
     }
 
     /// The directions on which a limit row depends, each with the slot of its derivative in a

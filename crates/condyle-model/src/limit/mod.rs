@@ -44,6 +44,18 @@ pub trait Limit: std::fmt::Debug + Send + Sync {
     /// The nearest legal numbers; `None` if the given ones are legal.
     fn legal(&self, numbers: &[f64]) -> Option<[f64; MOST_LIMITED]>;
 
+    /// How far outside these numbers are, in radians or metres, as people say it; 0 if they are legal.
+    ///
+    /// The distance to the nearest legal numbers; of an orientation, the greater of how far its direction
+    /// and how far its twist is outside.
+    fn beyond(&self, numbers: &[f64]) -> f64 {
+        let legal = self.legal(numbers);
+        legal.map_or(0.0, |legal| {
+            let apart = numbers.iter().zip(legal).map(|(asked, legal)| (asked - legal).powi(2));
+            apart.sum::<f64>().sqrt()
+        })
+    }
+
     /// A measure of the distance of these numbers to the nearest ones where [`Limit::legal`] is
     /// discontinuous; infinite if they are legal or there is no such place.
     fn margin(&self, numbers: &[f64]) -> f64;

@@ -343,6 +343,12 @@ impl Model {
         between
     }
 
+    /// A segment and those that it hangs from, outwards in.
+    pub fn path_to_root(&self, segment: SegmentId) -> impl Iterator<Item = SegmentId> + '_ {
+        let up = |&id: &SegmentId| self.segment(id).parent;
+        std::iter::successors(Some(segment), up).take(self.segments.len())
+    }
+
     /// The segments from the root to a segment, both included; none for the world.
     pub(crate) fn path_to(&self, segment: Option<SegmentId>) -> Vec<SegmentId> {
         let mut path = vec![];

@@ -1,5 +1,6 @@
 //! A model: segments, coordinates, loops, postures and markers.
 
+use super::network;
 use crate::output::{columns, wrapped};
 use condyle::check::circles;
 use condyle::model::PostureTerm;
@@ -81,6 +82,7 @@ pub(super) fn to_json(model: &Model) -> Value {
         "segments": segments,
         "joint_sets": model.joint_sets().iter().map(|set| &set.name).collect::<Vec<_>>(),
         "coordinates": coordinates,
+        "networks": network::to_json(model),
         "closures": closures,
         "postures": postures,
         "markers": markers,
@@ -177,6 +179,16 @@ pub(super) fn to_text(model: &Model) -> String {
         text.push_str("\ncoordinates: default and range\n");
         text.push_str(&columns(&coordinate_rows(model)));
     }
+    let limits = network::limit_rows(model);
+    if !limits.is_empty() {
+        text.push_str("\nlimits of several together: what each bounds, and how\n");
+        text.push_str(&columns(&limits));
+    }
+    let network = network::rows(model);
+    if !network.is_empty() {
+        text.push_str("\ncomponents of joint sets that are no plain joints: what each reads\n");
+        text.push_str(&columns(&network));
+    }
     if !model.closures().is_empty() {
         text.push_str("\nloops, which tracking closes and `fk` does not\n");
         let keys = keys(model);
@@ -269,7 +281,7 @@ fn coordinate_rows(model: &Model) -> Vec<Vec<String>> {
 }
 
 /// A value with its unit: degrees, millimetres, or metres for great lengths.
-fn amount(kind: CoordinateKind, value: f64, far: bool) -> String {
+pub(super) fn amount(kind: CoordinateKind, value: f64, far: bool) -> String {
     match kind {
         CoordinateKind::Rotation => format!("{}°", rounded(value.to_degrees(), 2)),
         CoordinateKind::Translation if far => format!("{} m", rounded(value, 3)),

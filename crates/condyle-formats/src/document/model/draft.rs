@@ -12,6 +12,8 @@ pub(super) struct Draft {
     pub(super) up: UpAxis,
     pub(super) segments: Vec<SegmentDraft>,
     pub(super) sets: Vec<Name>,
+    /// Those of them that are plain joints.
+    pub(super) plain: HashSet<String>,
     pub(super) coordinates: Vec<CoordinateDraft>,
     pub(super) components: Vec<ComponentDraft>,
     pub(super) outputs: Vec<OutputDraft>,
@@ -35,6 +37,8 @@ pub(super) struct SegmentDraft {
 pub(super) struct CoordinateDraft {
     pub(super) set: String,
     pub(super) name: Name,
+    /// Its own table, where it has one; the name may be that of its joint.
+    pub(super) table: Spot,
     pub(super) kind: CoordinateKind,
     pub(super) default: [f64; 4],
     pub(super) range: Range,
@@ -49,9 +53,11 @@ impl CoordinateDraft {
     /// A free coordinate at its neutral value.
     pub(super) fn new(set: &str, name: Name, kind: CoordinateKind) -> Self {
         let (set, default, range) = (set.to_owned(), kind.neutral(), Range::FREE);
+        let table = name.spot;
         Self {
             set,
             name,
+            table,
             kind,
             default,
             range,

@@ -7,6 +7,7 @@ use super::read::ModelReader;
 use crate::document::fields::Fields;
 use crate::document::texts::Name;
 use crate::document::tree::{Entry, Value};
+use crate::document::words;
 use condyle_diagnostics::did_you_mean;
 use condyle_math::function::Function;
 use condyle_math::{EulerOrder, Vec3};
@@ -93,6 +94,7 @@ impl ModelReader<'_> {
         let label = format!("joint.{}", set.text);
         let fields = self.table(&entry.node, set.spot, label.clone(), keys::JOINT);
         draft.sets.push(set.clone());
+        draft.plain.insert(set.text.clone());
         let wanted = format!("one of: {}", types().join(", "));
         let Some(kind) = self.required(&fields, "type", &wanted) else {
             draft.broken.insert((set.text, String::new()));
@@ -173,7 +175,10 @@ impl ModelReader<'_> {
         let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
         let Some((_, used)) = keys::JOINT_TYPES.iter().find(|(name, _)| *name == kind.text) else {
             let all = || format!("types are: {}", types().join(", "));
-            let help = did_you_mean(&kind.text, types(), all);
+            let help = match words::joint(&kind.text) {
+                Some(help) => help.to_owned(),
+                None => did_you_mean(&kind.text, types(), all),
+            };
             let message = format!("unknown type of joint `{}`", kind.text);
             self.texts.error(kind.spot, "model/joint-type", message, help);
             return None;
@@ -183,7 +188,12 @@ impl ModelReader<'_> {
             let known = keys::JOINT.contains(&key);
             if known && !used.contains(&key) && !keys::JOINT_BASE.contains(&key) {
                 let message = format!("a {} joint has no `{key}`", kind.text);
-                self.texts.error(entry.key.spot, "document/unknown-key", message, "omit it");
+                let help = match (key, used.contains(&"axes"), used.contains(&"axis")) {
+                    ("axis", true, _) => "give its `axes`",
+                    ("axes", _, true) => "give its `axis`",
+                    _ => "omit it",
+                };
+                self.texts.error(entry.key.spot, "document/unknown-key", message, help);
             }
         }
         let expansion = Expansion::default();
@@ -288,7 +298,7 @@ impl ModelReader<'_> {
         };
         let Some(node) = self.required(fields, key, &wanted) else { return [Vec3::Z; N] };
         if N == 1 {
-            return [self.vector(node, key).unwrap_or(Vec3::Z); N];
+            return [self.has_direction(node, key).unwrap_or(Vec3::Z); N];
         }
         let axes = self.vectors(node, key).unwrap_or_default();
         if axes.len() != N && matches!(node.value, Value::List(_)) {

@@ -14,7 +14,8 @@ use super::draft::{
     ClosureDraft, ComponentDraft, ConditionDraft, CoordinateDraft, Draft, Holder, MarkerDraft,
     OutputDraft, PostureDraft, SegmentDraft,
 };
-use crate::document::texts::{Name, Texts};
+use crate::document::texts::{Name, Spot, Texts};
+use condyle_diagnostics::{Severity, listed};
 use condyle_math::Vec3;
 use condyle_math::function::Function;
 use condyle_model::component::{Map, Mirrored, Place, PortType, Product, Reflection};
@@ -26,11 +27,14 @@ pub(super) struct Mirror {
     /// How the names of the written side end, and those of the mirrored side.
     pub(super) from: String,
     pub(super) to: String,
+    /// The place of the mirror in the text.
+    pub(super) spot: Spot,
 }
 
 impl Mirror {
     /// Adds everything of the other side that is not written.
     pub(super) fn complete(&self, draft: &mut Draft, texts: &mut Texts) {
+        self.question(draft, texts);
         let written = |names: &mut dyn Iterator<Item = &Name>| -> HashSet<String> {
             names.map(|n| n.text.clone()).collect()
         };
@@ -121,6 +125,61 @@ impl Mirror {
                 ..p.clone()
             },
         );
+    }
+
+    /// Says where the mirror does nothing, or not what is likely meant.
+    fn question(&self, draft: &Draft, texts: &mut Texts) {
+        let named = draft.segments.iter().map(|s| &s.name).chain(&draft.sets);
+        let named = named.chain(draft.markers.iter().map(|m| &m.name));
+        let names: Vec<&Name> = named.collect();
+        let mut warn = |spot, code, message: String, help: String| {
+            let said = texts.said(spot, Severity::Warning, code, message).with_help(help);
+            texts.warn(spot, said);
+        };
+        if !names.iter().any(|name| name.text.ends_with(&self.from)) {
+            let lower = |text: &str| text.to_lowercase();
+            let likely = names.iter().find(|name| lower(&name.text).ends_with(&lower(&self.from)));
+            let back = names.iter().find(|name| name.text.ends_with(&self.to));
+            let help = match (likely, back) {
+                (Some(name), _) => {
+                    let end = name.text.len() - self.from.len();
+                    let end = name.text.get(end..).unwrap_or(&name.text);
+                    format!("`{}` ends with `{end}`: did you mean from = \"{end}\"?", name.text)
+                }
+                (None, Some(name)) => {
+                    format!("`{}` ends with `{}`: exchange `from` and `to`", name.text, self.to)
+                }
+                (None, None) => {
+                    "give the ending of the names of the written side, or omit the mirror"
+                        .to_owned()
+                }
+            };
+            let message = format!("the mirror does nothing: no name ends with `{}`", self.from);
+            warn(self.spot, "model/mirror", message, help);
+        }
+        // Both sides have a coordinate of that name, so that no motion can name one of them alone. The names
+        // in a joint set that is written out are its own.
+        for set in draft.sets.iter().filter(|set| draft.plain.contains(&set.text)) {
+            let Some(other) = self.other(&set.text) else { continue };
+            if draft.sets.iter().any(|s| s.text == other) {
+                continue;
+            }
+            let own = draft.coordinates.iter().filter(|c| c.set == set.text);
+            let alike: Vec<&Name> =
+                own.map(|c| &c.name).filter(|name| self.other(&name.text).is_none()).collect();
+            let Some(first) = alike.first() else { continue };
+            let message = format!(
+                "{} of `{}` {} the same name on both sides, as `{other}` is its mirror image",
+                listed(alike.iter().map(|name| &name.text)),
+                set.text,
+                if alike.len() == 1 { "has" } else { "have" },
+            );
+            let help = format!(
+                "end the name with the side, such as `{}{}`; motions can then name it alone",
+                first.text, self.from
+            );
+            warn(first.spot, "model/mirror-names", message, help);
+        }
     }
 
     fn other(&self, name: &str) -> Option<String> {

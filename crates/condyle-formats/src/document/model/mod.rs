@@ -39,9 +39,10 @@ pub use write::write;
 
 use self::read::ModelReader;
 use super::{Form, Kind, read_kind};
-use condyle_diagnostics::{Error, Read};
+use condyle_diagnostics::{Diagnostic, Error, Place, Read, Subject};
 use condyle_model::Model;
 use condyle_model::component::Registry;
+use std::collections::HashMap;
 
 const FORM: Form =
     Form { kind: Kind::Model, keys: keys::TOP, own: &["up"], repeated: keys::REPEATED };
@@ -53,6 +54,17 @@ pub struct Document {
     pub model: Model,
     /// The text, comments and all. Saving a document writes this.
     pub text: String,
+    /// Where each part of the model stands.
+    places: HashMap<Subject, Origin>,
+}
+
+/// Where a part of a model stands in its document.
+#[derive(Clone, Debug, PartialEq)]
+struct Origin {
+    /// In the document itself; of an included text, the line that includes it.
+    place: Place,
+    /// In the included text, as `file:line:column: `; empty where it stands in the document itself.
+    included: String,
 }
 
 impl Document {
@@ -60,7 +72,18 @@ impl Document {
     #[must_use]
     pub fn of(model: Model) -> Self {
         let text = write(&model);
-        Self { model, text }
+        Self { model, text, places: HashMap::new() }
+    }
+
+    /// Adds to what is said about a part of the model where it stands in the text.
+    pub fn locate(&self, said: &mut Diagnostic) {
+        if said.place.is_some() {
+            return;
+        }
+        if let Some(origin) = said.subjects.iter().find_map(|subject| self.places.get(subject)) {
+            said.place = Some(origin.place);
+            said.message.insert_str(0, &origin.included);
+        }
     }
 }
 
@@ -158,5 +181,5 @@ pub fn read_with(
         let draft = reader.draft(top);
         resolve::build(draft, reader.texts)
     })?;
-    Ok(read.map(|model| Document { model, text: text.to_owned() }))
+    Ok(read.map(|(model, places)| Document { model, text: text.to_owned(), places }))
 }

@@ -1,5 +1,6 @@
 //! Resolves names, and builds the checked model.
 
+use super::Origin;
 use super::draft::{ConditionDraft, Draft, Holder};
 use super::mirror::escaped;
 use crate::document::texts::{Name, Spot, Texts};
@@ -24,8 +25,8 @@ struct Meaning {
     outputs: usize,
 }
 
-/// Builds the model; `None` after an error.
-pub(super) fn build(draft: Draft, texts: &mut Texts) -> Option<Model> {
+/// Builds the model, with the place of each of its parts; `None` after an error.
+pub(super) fn build(draft: Draft, texts: &mut Texts) -> Option<(Model, HashMap<Subject, Origin>)> {
     let mut resolver = Resolver {
         texts,
         builder: ModelBuilder::new(draft.name.as_deref().unwrap_or("model")),
@@ -64,7 +65,12 @@ pub(super) fn build(draft: Draft, texts: &mut Texts) -> Option<Model> {
                 texts.error(whole, "model/size", message, help);
                 return None;
             }
-            Some(model)
+            let origin = |(subject, spot)| {
+                let (place, included) = texts.origin(spot);
+                (subject, Origin { place, included })
+            };
+            let places = places.into_iter().map(origin).collect();
+            Some((model, places))
         }
         Err(findings) => {
             let errors = findings.into_diagnostics();
@@ -161,6 +167,7 @@ impl Resolver<'_> {
         }
         for set in &draft.sets {
             let id = self.builder.joint_set(&set.text);
+            self.places.insert(Subject::JointSet(set.text.clone()), set.spot);
             if self.sets.insert(set.text.clone(), id).is_some() {
                 self.twice("joint set", set);
             }
@@ -174,7 +181,7 @@ impl Resolver<'_> {
             made.source.clone_from(&c.source);
             let key = format!("{}/{}", c.set, c.name.text);
             for key in [c.name.text.clone(), key] {
-                self.places.insert(Subject::Coordinate(key), c.name.spot);
+                self.places.insert(Subject::Coordinate(key), c.table);
             }
             let port = match c.kind {
                 CoordinateKind::Orientation => PortType::Orientation,

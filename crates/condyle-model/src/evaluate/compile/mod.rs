@@ -3,13 +3,15 @@
 mod chain;
 mod scalar;
 
+use super::behind::Behind;
 use super::derivative_plan::{DerivativePlan, plan};
 use super::instruction::{Code, Frame, Number};
 use super::program::Program;
-use crate::component::{Law, Signal};
+use crate::component::{Law, PortType, Signal};
 use crate::model::{
     ComponentId, CoordinateId, CoordinateKind, Model, Node, SegmentId, dependency_order, measured,
 };
+use condyle_math::function::Function;
 use std::collections::HashMap;
 
 /// The compiled form of a source: a constant or a register.
@@ -107,6 +109,8 @@ fn compile(model: &Model, wanted: &[bool], moving: &[bool]) -> Program {
             asked: vec![],
             limits: vec![],
             measured_rows: vec![],
+            bounds: vec![],
+            behind: vec![],
             code: Code {
                 scalars: model.stored_len(),
                 transforms: model.segments.len() + 2,
@@ -146,9 +150,10 @@ fn compile(model: &Model, wanted: &[bool], moving: &[bool]) -> Program {
     compiler.mark_needed(&order, wanted);
     compiler.limits();
     compiler.find_effective(&order);
-    for node in order {
+    for &node in &order {
         compiler.node(node);
     }
+    compiler.find_behind(&order);
     compiler.follower_rows();
     for segment in model.parents_first() {
         if wanted[segment.index()] {
@@ -274,6 +279,62 @@ impl Compiler<'_> {
             let pairs = own.zip(asked..).map(|(own, asked)| (Number::new(own), Number::new(asked)));
             self.program.asked.extend(pairs);
         }
+    }
+
+    /// Finds the coordinates whose limits act behind maps. Of several limits of one coordinate the last
+    /// counts; one that acts on the coordinate itself has written it back.
+    fn find_behind(&mut self, order: &[Node]) {
+        // For each signal the coordinate that it comes from, and the maps in between.
+        let mut routes: HashMap<Signal, (CoordinateId, Vec<Function>)> = HashMap::new();
+        let mut last: HashMap<CoordinateId, Behind> = HashMap::new();
+        for node in order {
+            let Node::Component(id) = *node else { continue };
+            let component = &self.model.components[id.index()];
+            if !self.needed[id.index()] || self.measured[id.index()] {
+                continue;
+            }
+            let route = |signal: Signal| match signal {
+                Signal::Coordinate(id) if self.model.coordinate(id).follows.is_none() => {
+                    Some((id, vec![]))
+                }
+                other => routes.get(&other).cloned(),
+            };
+            let mut found = vec![];
+            match &component.law {
+                Law::Map(map) => {
+                    let Some((coordinate, functions)) = route(component.inputs[0]) else {
+                        continue;
+                    };
+                    for (k, function) in map.functions.iter().enumerate() {
+                        let functions = [&functions[..], std::slice::from_ref(function)].concat();
+                        found.push((Signal::Output(id, k as u32), (coordinate, functions)));
+                    }
+                }
+                law if law.bounds() && law.outputs().0 == PortType::Scalar => {
+                    for (k, &source) in component.inputs.iter().enumerate().take(law.outputs().1) {
+                        let Some((coordinate, functions)) = route(source) else { continue };
+                        let output = Signal::Output(id, k as u32);
+                        let numbers = [self.scalar(source), self.scalar(output)];
+                        if let [Operand::Register(before), Operand::Register(held)] = numbers
+                            && !functions.is_empty()
+                        {
+                            let functions = functions.clone();
+                            let behind = Behind { coordinate, functions, before, held };
+                            // What the maps give is that of the first limit in a chain.
+                            let first = last.get(&coordinate).map_or(before, |known| known.before);
+                            last.insert(coordinate, Behind { before: first, ..behind });
+                        }
+                        found.push((output, (coordinate, functions)));
+                    }
+                }
+                _ => {}
+            }
+            routes.extend(found);
+        }
+        let direct: Vec<CoordinateId> = self.effective.values().copied().collect();
+        let behind = last.into_values().filter(|behind| !direct.contains(&behind.coordinate));
+        self.program.behind = behind.collect();
+        self.program.behind.sort_by_key(|behind| behind.coordinate);
     }
 
     fn limits(&mut self) {

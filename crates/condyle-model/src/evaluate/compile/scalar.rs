@@ -3,6 +3,7 @@
 use super::super::instruction::{
     CombineCall, Instruction, LimitCall, Number, NumbersCall, PositionCall,
 };
+use super::super::program::Bound;
 use super::{Compiler, Operand};
 use crate::component::{Component, Depend, Family, Law, Motion, PortType, Scalars, Signal};
 use crate::limit::Limit;
@@ -95,8 +96,19 @@ impl Compiler<'_> {
                 self.share(id);
             }
         }
+        let rows = first_row..self.program.code.rows.len();
         if self.measured[id.index()] || matches!(component.law, Law::Contact(_)) {
-            self.program.measured_rows.extend(first_row..self.program.code.rows.len());
+            self.program.measured_rows.extend(rows.clone());
+        }
+        if !rows.is_empty() {
+            let mut numbers = vec![];
+            for (port, source) in component.ports().filter(|_| component.law.bounds()) {
+                let scalar = self.scalar(source);
+                let first = self.register(scalar);
+                let count = if port.takes == PortType::Orientation { 4 } else { 1 };
+                numbers.extend((0..count).map(|k| Number(first.0 + k)));
+            }
+            self.program.bounds.push(Bound { component: id, rows, numbers });
         }
     }
 

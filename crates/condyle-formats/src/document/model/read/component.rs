@@ -6,12 +6,14 @@ use crate::document::fields::Fields;
 use crate::document::function::rescaled;
 use crate::document::model::draft::{ComponentDraft, Draft};
 use crate::document::texts::Name;
-use crate::document::tree::{Entry, Value};
+use crate::document::tree::{Entry, Node, Value};
+use crate::document::words;
 use condyle_diagnostics::did_you_mean;
+use condyle_math::function::Function;
 use condyle_model::Law;
 use condyle_model::component::{
-    Arity, Ball, Combine, Compensate, Depend, Kind, Map, Pivot, Place, PortType, Product,
-    RelativeOrientation, Rotate, Translate,
+    Arity, Ball, Combine, Compensate, Depend, Kind, Map, Pivot, PivotError, Place, PortType,
+    Product, RelativeOrientation, Rotate, Translate,
 };
 
 /// The help where a direction is missing.
@@ -31,7 +33,7 @@ const READERS: &[LawReader] = &[
         let node = r.required(f, "function", "{ slopes = [...], intercept = 0 }")?;
         Some(Law::Combine(Combine { function: r.several(node, "function")? }))
     }),
-    reader("depend", &["lower", "upper"], |r, f| r.depend(f)),
+    reader("depend", &["lower", "upper", "in", "out"], |r, f| r.depend(f)),
     reader(
         "cone",
         &["axes", "order", "rest", "points", "twist", "subdivisions", "projection"],
@@ -51,11 +53,11 @@ const READERS: &[LawReader] = &[
     reader("relative_position", &["point", "along"], |r, f| r.relative_position(f)),
     reader("angles", &["order", "twist", "mirrored"], |r, f| r.angles(f)),
     reader("rotate", &["axis"], |r, f| {
-        Some(Law::Rotate(Rotate { axis: r.required_vector(f, "axis", DIRECTION)? }))
+        Some(Law::Rotate(Rotate { axis: r.required_direction(f, "axis", DIRECTION)? }))
     }),
     reader("pivot", &["axis", "centres", "path"], |r, f| r.pivot(f)),
     reader("translate", &["axis"], |r, f| {
-        let axis = r.required_vector(f, "axis", "a direction such as [0, 1, 0]")?;
+        let axis = r.required_direction(f, "axis", "a direction such as [0, 1, 0]")?;
         Some(Law::Translate(Translate { axis }))
     }),
     reader("ball", &[], |_, _| Some(Law::Ball(Ball))),
@@ -100,8 +102,9 @@ impl ModelReader<'_> {
             let known: Vec<&str> = component_keys(kind).collect();
             let label = format!("{label}.{}", kind.name);
             let fields = self.table(&one.node, name.spot, label, &known);
-            let ports = self.ports(&fields, kind);
-            Some(((reader.read)(self, &fields)?, ports?))
+            // Both to the end, so that every error is reported.
+            let (ports, law) = (self.ports(&fields, kind), (reader.read)(self, &fields));
+            Some((law?, ports?))
         });
         match read {
             Some((law, ports)) => {
@@ -133,7 +136,10 @@ impl ModelReader<'_> {
             return Some((one, found.0, found.1));
         }
         let all = || format!("kinds are: {}", kinds.join(", "));
-        let help = did_you_mean(name, kinds.iter().copied(), all);
+        let help = match words::kind(name) {
+            Some(help) => help.to_owned(),
+            None => did_you_mean(name, kinds.iter().copied(), all),
+        };
         let message = format!("unknown kind of component `{name}`");
         self.texts.error(one.key.spot, "model/component", message, help);
         None
@@ -164,14 +170,28 @@ impl ModelReader<'_> {
     }
 
     fn pivot(&mut self, fields: &Fields<'_>) -> Option<Law> {
-        let axis = self.required_vector(fields, "axis", DIRECTION);
+        let axis = self.required_direction(fields, "axis", DIRECTION);
         let (centre, axis) = (self.centre(fields)?, axis?);
         match Pivot::new(axis, centre) {
             Ok(pivot) => Some(Law::Pivot(pivot)),
             Err(why) => {
+                let node = match why {
+                    PivotError::Axis => fields.get("axis"),
+                    _ => fields.get("centres").or(fields.get("path")),
+                };
+                let interval = match (&why, node.map(|node| &node.value)) {
+                    (
+                        PivotError::NotIncreasing(i) | PivotError::NotFinite(i),
+                        Some(Value::List(list)),
+                    ) => list.get(*i),
+                    _ => None,
+                };
+                let spot = interval.or(node).map_or(fields.spot, |node| node.spot);
                 let why = why.to_string();
-                let (message, help) = why.split_once(": ").unwrap_or((&why, "change its centres"));
-                self.texts.error(fields.spot, "model/component", message, help);
+                let rising = "give each interval its upper end `to`, in rising order; only the last may \
+                              have none";
+                let (message, help) = why.split_once(": ").unwrap_or((&why, rising));
+                self.texts.error(spot, "model/component", message, help);
                 None
             }
         }
@@ -183,33 +203,48 @@ impl ModelReader<'_> {
             None => Some(None),
         };
         let (lower, upper) = (bound("lower"), bound("upper"));
+        let units = self.units(fields);
         if matches!((&lower, &upper), (Some(None), Some(None))) {
             self.missing(fields, "lower", "`lower`, `upper` or both, as functions of the driver");
             return None;
         }
-        Some(Law::Depend(Depend { lower: lower?, upper: upper? }))
+        let (argument, value) = units?;
+        let scaled = |bound: Option<Function>| bound.map(|f| rescaled(f, argument, value));
+        Some(Law::Depend(Depend { lower: scaled(lower?), upper: scaled(upper?) }))
     }
 
     fn map(&mut self, fields: &Fields<'_>) -> Option<Law> {
-        let mut functions = match (fields.get("function"), fields.get("functions")) {
-            (Some(node), None) => vec![self.function(node, "function")?],
+        let units = self.units(fields);
+        let functions = match (fields.get("function"), fields.get("functions")) {
+            (Some(node), None) => self.function(node, "function").map(|function| vec![function]),
+            (None, Some(Node { value: Value::Table(_), spot })) => {
+                let help = "give one function as `function`, several as a list of them";
+                self.texts.error(*spot, "document/type", "`functions` is a table", help);
+                None
+            }
             (None, Some(node)) => {
                 let list = self.list(node, "functions")?;
                 let read: Vec<_> = list.iter().map(|n| self.function(n, "functions")).collect();
-                read.into_iter().collect::<Option<Vec<_>>>()?
+                read.into_iter().collect::<Option<Vec<_>>>()
             }
             (None, None) => {
                 self.missing(fields, "function", "a function such as { linear = [0.5, 0] }");
-                return None;
+                None
             }
             (Some(_), Some(node)) => {
                 self.exclusive(node, "function", "functions");
-                return None;
+                None
             }
         };
-        let mut unit = |key: &str| fields.get(key).map_or(Some(1.0), |n| self.unit_of(n, key));
-        let (argument, value) = (unit("in")?, unit("out")?);
-        functions = functions.into_iter().map(|f| rescaled(f, argument, value)).collect();
+        let (argument, value) = units?;
+        let functions = functions?.into_iter().map(|f| rescaled(f, argument, value)).collect();
         Some(Law::Map(Map { functions }))
+    }
+
+    /// The factors from the units `in` of arguments and `out` of values to radians and metres.
+    fn units(&mut self, fields: &Fields<'_>) -> Option<(f64, f64)> {
+        let mut unit = |key: &str| fields.get(key).map_or(Some(1.0), |n| self.unit_of(n, key));
+        let (argument, value) = (unit("in"), unit("out"));
+        Some((argument?, value?))
     }
 }

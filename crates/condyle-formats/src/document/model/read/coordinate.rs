@@ -18,6 +18,7 @@ impl ModelReader<'_> {
         free_kind: bool,
     ) -> CoordinateDraft {
         let label = format!("{owner}.coordinate.{}", entry.key.text);
+        coordinate.table = entry.key.spot;
         let fields = self.table(&entry.node, entry.key.spot, label, keys::COORDINATE);
         if let Some(kind) = fields.get("kind").and_then(|n| self.text(n, "kind")) {
             use CoordinateKind::{Orientation, Other, Rotation, Scale, Translation};
@@ -85,9 +86,14 @@ impl ModelReader<'_> {
         let known: &[(&str, f64)] = match kind {
             CoordinateKind::Rotation => &[("rad", 1.0), ("deg", DEGREE)],
             CoordinateKind::Translation => &[("m", 1.0), ("cm", 0.01), ("mm", 0.001)],
-            CoordinateKind::Other => {
-                &[("1", 1.0), ("rad", 1.0), ("deg", DEGREE), ("m", 1.0), ("mm", 0.001)]
-            }
+            CoordinateKind::Other => &[
+                ("1", 1.0),
+                ("rad", 1.0),
+                ("deg", DEGREE),
+                ("m", 1.0),
+                ("cm", 0.01),
+                ("mm", 0.001),
+            ],
             CoordinateKind::Scale | CoordinateKind::Orientation => &[],
         };
         if let Some((_, factor)) = known.iter().find(|(unit, _)| *unit == name.text) {

@@ -102,7 +102,7 @@ impl ModelReader<'_> {
             self.texts.error(plane.spot, "model/mirror", message, help);
             return None;
         };
-        Some(Mirror { reflection: axis, from: from.text, to: to.text })
+        Some(Mirror { reflection: axis, from: from.text, to: to.text, spot: from.spot })
     }
 
     fn segment(&mut self, draft: &mut Draft, entry: &Entry) {

@@ -22,13 +22,22 @@ impl ModelReader<'_> {
         let node = self.required(fields, "centres", wanted)?;
         let unit = self.angle_unit(node.spot);
         let mut centres = vec![];
-        for node in self.list(node, "centres")? {
+        let list = self.list(node, "centres")?;
+        for (number, node) in list.iter().enumerate() {
             let label = format!("{}.centres", fields.label);
             let fields = self.table(node, node.spot, label, keys::CENTRE);
             // The last interval may be unbounded.
             let to = match fields.get("to") {
                 Some(node) => unit * self.number(node, "to")?,
-                None => f64::INFINITY,
+                None if number + 1 == list.len() => f64::INFINITY,
+                None => {
+                    self.missing(
+                        &fields,
+                        "to",
+                        "the upper end of its interval; only the last may have none",
+                    );
+                    return None;
+                }
             };
             centres
                 .push((to, fields.get("at").map_or(Some(Vec3::ZERO), |n| self.vector(n, "at"))?));

@@ -1,16 +1,21 @@
-//! A motion against its model: where it leaves ranges, contradicts couplings, opens loops or jumps.
+//! A motion against its model: where it leaves ranges and limits, contradicts couplings, opens loops or
+//! jumps.
 //!
 //! Effective values are checked: a follower has the value that its leaders determine, and a column
 //! that differs from it is a separate finding. Blank cells, and coordinates without a column, are
 //! not checked. A rotation whose range is a circle has no end to be beyond.
 
-use super::closure::{Gap, gaps};
-use super::{amount, finding, length, listed, real_range, rounded, tolerance};
+mod limits;
+
+pub use limits::{Broken, Nearest};
+
+use crate::closure::{Gap, gaps};
+use crate::{amount, finding, length, listed, real_range, rounded, tolerance};
 use condyle_diagnostics::{Diagnostic, Severity, Subject};
-use condyle_math::Quat;
+use condyle_math::{Mat3, Quat};
 use condyle_model::component::Signal;
 use condyle_model::evaluate::ClosureRows;
-use condyle_model::{CoordinateId, CoordinateKind, Mode, Model, Pose, Program};
+use condyle_model::{CoordinateId, CoordinateKind, Mode, Model, Pose, Program, SegmentId};
 use condyle_motion::Motion;
 use condyle_motion::columns::{cells, coordinate_name};
 use condyle_motion::{AngleUnit, Table};
@@ -104,8 +109,81 @@ pub struct Jump {
     pub time: f64,
     /// The change in radians.
     pub by: f64,
+    /// By how much the segment that it moves turns in its parent meanwhile, in radians: less where several
+    /// angles change together without much motion.
+    pub turned: f64,
     /// Whether it is a whole number of turns, so that the posture hardly changes.
     pub wrap: bool,
+}
+
+/// What a sudden change of an angle is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Leap {
+    /// The segment turns that much.
+    Jump,
+    /// A whole turn.
+    Wrap,
+    /// Several angles change together, and the segment hardly turns.
+    Rename,
+}
+
+impl Jump {
+    fn leap(&self) -> Leap {
+        match (self.wrap, self.turned > JUMP) {
+            (true, _) => Leap::Wrap,
+            (false, true) => Leap::Jump,
+            (false, false) => Leap::Rename,
+        }
+    }
+}
+
+/// By how much segments turn in their parents from one frame to the next.
+struct Turned<'m> {
+    model: &'m Model,
+    /// For each coordinate the segments that it moves in their parents: those of its joint set.
+    moved: Vec<Vec<SegmentId>>,
+    /// The rotations of the last two frames.
+    rotations: [Vec<Mat3>; 2],
+}
+
+impl<'m> Turned<'m> {
+    fn new(model: &'m Model, program: &Program) -> Self {
+        let moved = |id: CoordinateId| {
+            let along = model.tangent_range(id);
+            let moves = |segment: &SegmentId| {
+                let own = |s: SegmentId| {
+                    let directions = program.segment_directions(s).iter();
+                    directions.map(|(d, _)| *d as usize).filter(|d| along.contains(d)).count()
+                };
+                let parent = model.segment(*segment).parent.map_or(0, own);
+                // A parent that it moves as well hands its motion on; the joint itself decides.
+                own(*segment) > 0
+                    && (parent == 0
+                        || model.segment(*segment).joint_set
+                            == Some(model.coordinate(id).joint_set))
+            };
+            model.segment_ids().filter(moves).collect()
+        };
+        let moved = model.coordinate_ids().map(moved).collect();
+        Self { model, moved, rotations: [vec![], vec![]] }
+    }
+
+    fn frame(&mut self, pose: &Pose) {
+        self.rotations.swap(0, 1);
+        let turn = |id| pose.segment_in_parent(self.model, id).linear;
+        self.rotations[1] = self.model.segment_ids().map(turn).collect();
+    }
+
+    /// The largest turn of the segments that a coordinate moves.
+    fn of(&self, id: CoordinateId) -> f64 {
+        let [before, now] = &self.rotations;
+        let turn = |segment: &SegmentId| {
+            let at = segment.index();
+            let (Some(before), Some(now)) = (before.get(at), now.get(at)) else { return 0.0 };
+            Quat::from_mat3(*before).normalized().angle_to(Quat::from_mat3(*now).normalized())
+        };
+        self.moved[id.index()].iter().map(turn).fold(0.0, f64::max)
+    }
 }
 
 /// The result of checking a motion against its model.
@@ -119,6 +197,8 @@ pub struct MotionCheck {
     pub outside: Vec<Outside>,
     /// Followers whose columns contradict their leaders.
     pub disagreements: Vec<Disagreement>,
+    /// Limits of several numbers together that are broken, and contacts that leave their surface.
+    pub broken: Vec<Broken>,
     /// Loops that are open.
     pub open_loops: Vec<OpenLoop>,
     /// Jumps of rotations.
@@ -183,6 +263,8 @@ pub fn check(model: &Model, table: &Table) -> MotionCheck {
         model,
         &cells.iter().filter(|c| c.column.is_some()).map(|c| c.coordinate).collect::<Vec<_>>(),
     );
+    let mut watch = limits::Watch::new(model, &program);
+    let mut turned = Turned::new(model, &program);
     let mut before: Option<Vec<f64>> = None;
     let mut gaps_of = vec![];
     for (frame, (&time, stored)) in motion.times.iter().zip(&motion.frames).enumerate() {
@@ -196,6 +278,8 @@ pub fn check(model: &Model, table: &Table) -> MotionCheck {
         }
         // The buffers are made for this program.
         let _ = program.evaluate(stored, Mode::Open, &mut pose);
+        watch.frame(frame, time, &pose);
+        turned.frame(&pose);
         for id in model.coordinate_ids() {
             let place = model.stored_range(id).start;
             let follows = model.coordinate(id).follows.is_some();
@@ -210,7 +294,7 @@ pub fn check(model: &Model, table: &Table) -> MotionCheck {
                 && given[place]
                 && let Some(before) = before.as_deref().filter(|b| b[place].is_finite())
             {
-                check.jump(model, id, frame, time, before, stored);
+                check.jump(model, id, frame, time, [before, stored], &turned);
             }
         }
         // A blank cell is no value to compare with.
@@ -223,14 +307,15 @@ pub fn check(model: &Model, table: &Table) -> MotionCheck {
     }
     check.loops(model, &gaps_of);
     check.summarise(model);
-    check.say(model, table, &motion);
+    check.say(model, table, &motion, watch.say());
+    check.broken = watch.broken;
     check
 }
 
 /// Coordinates whose values come from the file: given ones, and followers of given ones.
 fn judged(model: &Model, given: &[CoordinateId]) -> Vec<bool> {
-    let reach = super::reach::Reach::new(model);
-    let circles = super::circles(model);
+    let reach = crate::reach::Reach::new(model);
+    let circles = crate::circles(model);
     model
         .coordinate_ids()
         .map(|id| {
@@ -320,8 +405,8 @@ impl MotionCheck {
         id: CoordinateId,
         frame: usize,
         time: f64,
-        before: &[f64],
-        now: &[f64],
+        [before, now]: [&[f64]; 2],
+        turned: &Turned<'_>,
     ) {
         let place = model.stored_range(id);
         let by = match model.coordinate(id).kind {
@@ -338,7 +423,8 @@ impl MotionCheck {
         if by.is_finite() && by.abs() > JUMP {
             let turns = (by / TAU).round();
             let wrap = turns != 0.0 && (by - turns * TAU).abs() < JUMP;
-            self.jumps.push(Jump { coordinate: id, frame, time, by, wrap });
+            let turned = turned.of(id);
+            self.jumps.push(Jump { coordinate: id, frame, time, by, turned, wrap });
         }
     }
 
@@ -389,7 +475,13 @@ impl MotionCheck {
             .sort_by(|a, b| b.enforced.cmp(&a.enforced).then(weight(b).total_cmp(&weight(a))));
     }
 
-    fn say(&mut self, model: &Model, table: &Table, motion: &Motion) {
+    fn say(
+        &mut self,
+        model: &Model,
+        table: &Table,
+        motion: &Motion,
+        limits: impl Iterator<Item = Diagnostic>,
+    ) {
         let mut findings = vec![];
         let key = |id: CoordinateId| model.coordinate_key(id);
         let shown = |id: CoordinateId, value: f64| amount(model.coordinate(id).kind, value);
@@ -417,6 +509,7 @@ impl MotionCheck {
                 ),
             ));
         }
+        findings.extend(limits);
         for d in &self.disagreements {
             findings.push(finding(
                 Severity::Warning,
@@ -494,40 +587,59 @@ impl MotionCheck {
     }
 
     fn say_jumps(&self, model: &Model, findings: &mut Vec<Diagnostic>) {
+        let degrees = |radians: f64| format!("{}°", rounded(radians.to_degrees(), 1));
         for id in model.coordinate_ids() {
-            for wrap in [false, true] {
-                let own = || self.jumps.iter().filter(|j| j.coordinate == id && j.wrap == wrap);
-                let worst = own().max_by(|a, b| a.by.abs().total_cmp(&b.by.abs()));
-                let Some(worst) = worst else { continue };
+            // What is judged is how far the segment turns, not what its angles are called.
+            for kind in [Leap::Jump, Leap::Wrap, Leap::Rename] {
+                let own = || self.jumps.iter().filter(|j| j.coordinate == id && j.leap() == kind);
+                let size = |j: &Jump| if kind == Leap::Jump { j.turned } else { j.by.abs() };
+                let Some(worst) = own().max_by(|a, b| size(a).total_cmp(&size(b))) else {
+                    continue;
+                };
                 let key = model.coordinate_key(id);
                 let count = own().count();
                 let times = if count == 1 { "once".to_owned() } else { format!("{count} times") };
-                let (what, help) = match wrap {
-                    true => ("wraps around", "add or subtract 360° to make it continuous"),
-                    false => (
-                        "jumps",
-                        "a rotation by 60° in one frame is implausible: is a frame missing?",
+                let at = format!("most at frame {} ({} s)", worst.frame, rounded(worst.time, 4));
+                let (by, turned) = (degrees(worst.by), degrees(worst.turned));
+                let (severity, code, message, help) = match kind {
+                    Leap::Jump => (
+                        Severity::Warning,
+                        "motion/jump",
+                        format!(
+                            "`{key}` jumps {times}; {at}, by {by}: its segment turns by {turned}"
+                        ),
+                        "a turn by 60° in one frame is implausible: is a frame missing?",
+                    ),
+                    Leap::Wrap => (
+                        Severity::Warning,
+                        "motion/wrap",
+                        format!("`{key}` wraps around {times}; {at}, by {by}"),
+                        "add or subtract 360° to make it continuous",
+                    ),
+                    Leap::Rename => (
+                        Severity::Note,
+                        "motion/renamed",
+                        format!(
+                            "`{key}` changes abruptly {times}; {at}, by {by}, while its segment turns by {turned}"
+                        ),
+                        "the posture goes on: near a gimbal lock other angles name it",
                     ),
                 };
-                findings.push(finding(
-                    Severity::Warning,
-                    if wrap { "motion/wrap" } else { "motion/jump" },
-                    [Subject::Coordinate(key.clone())],
-                    format!(
-                        "`{key}` {what} {times}; most at frame {} ({} s), by {}°",
-                        worst.frame,
-                        rounded(worst.time, 4),
-                        rounded(worst.by.to_degrees(), 1)
-                    ),
-                    help,
-                ));
+                findings.push(finding(severity, code, [Subject::Coordinate(key)], message, help));
             }
         }
     }
 
+    /// Leaves out what is said of changes from frame to frame: the frames are separate poses.
+    pub fn forget_jumps(&mut self) {
+        self.jumps.clear();
+        self.findings
+            .retain(|f| !matches!(f.code, "motion/jump" | "motion/wrap" | "motion/renamed"));
+    }
+
     /// Whether the motion passes the check: no finding is an error or a warning.
     pub fn holds(&self) -> bool {
-        !self.findings.iter().any(super::counts)
+        !self.findings.iter().any(crate::counts)
     }
 }
 
