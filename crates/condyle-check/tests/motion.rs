@@ -218,3 +218,52 @@ fn degrees_taken_for_radians() {
     table.angle_unit = AngleUnit::Degrees;
     assert_eq!(codes(&check(&model, &table)), []);
 }
+
+#[test]
+fn a_follower_without_a_unit_may_be_written_in_degrees() {
+    let mut b = ModelBuilder::new("knee");
+    let shank = b.segment("shank", None);
+    let (set, knee) = b.hinge("knee", shank, "flexion", Vec3::Z);
+    let beta = b.coordinate(set, "beta", CoordinateKind::Other);
+    let law = b.map(set, "law", knee, Function::linear(1.0, 0.0));
+    b.follow(beta, law);
+    let model = model(b);
+    // Some programs write such a coordinate in radians, others in degrees; 50 is neither.
+    for (value, expected) in [(30f64.to_radians(), 0), (30.0, 0), (50.0, 1)] {
+        let check = check(&model, &motion(&["flexion", "beta"], &[&[30.0, value]]));
+        assert_eq!(check.disagreements.len(), expected, "{value}");
+    }
+}
+
+#[test]
+fn angles_that_are_renamed_are_no_jump() {
+    // At the gimbal lock of z, x, y the first and the third angle turn about one axis: 100 degrees of the one
+    // and -100 of the other together leave the segment where it was.
+    let mut b = ModelBuilder::new("arm");
+    let arm = b.segment("arm", None);
+    let set = b.joint_set("shoulder");
+    let mut turns = vec![];
+    for (name, axis) in [("plane", Vec3::Z), ("elevation", Vec3::X), ("turn", Vec3::Z)] {
+        let id = b.coordinate(set, name, CoordinateKind::Rotation);
+        turns.push(b.rotate(set, &format!("about_{name}"), id, axis));
+    }
+    let whole = b.product(set, "whole", turns);
+    b.output(set, arm, whole);
+    let model = model(b);
+    let columns = ["plane", "elevation", "turn"];
+    let renamed = check(&model, &motion(&columns, &[&[0.0, 5.0, 0.0], &[100.0, 5.0, -100.0]]));
+    assert_eq!(
+        codes(&renamed),
+        [(Severity::Note, "motion/renamed"), (Severity::Note, "motion/renamed")]
+    );
+    // The chord: with 5 degrees of elevation the segment turns by 2·asin(sin 5° · sin 50°)... less than 9.
+    assert!(
+        renamed.jumps.iter().all(|jump| jump.turned < 9f64.to_radians()),
+        "{:?}",
+        renamed.jumps
+    );
+    assert!(renamed.holds());
+    let jumped = check(&model, &motion(&columns, &[&[0.0, 5.0, 0.0], &[100.0, 5.0, 0.0]]));
+    assert_eq!(codes(&jumped), [(Severity::Warning, "motion/jump")]);
+    near(jumped.jumps[0].turned, 100f64.to_radians());
+}

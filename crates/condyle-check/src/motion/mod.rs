@@ -288,7 +288,8 @@ pub fn check(model: &Model, table: &Table) -> MotionCheck {
                 check.range(model, id, frame, time, value);
             }
             if follows && given[place] {
-                check.coupling(model, id, [frame as f64, time, stored[place], value]);
+                let degrees = table.angle_unit == AngleUnit::Degrees;
+                check.coupling(model, id, [frame as f64, time, stored[place], value], degrees);
             }
             if !follows
                 && given[place]
@@ -372,11 +373,16 @@ impl MotionCheck {
         model: &Model,
         id: CoordinateId,
         [frame, time, value, expected]: [f64; 4],
+        degrees: bool,
     ) {
         let kind = model.coordinate(id).kind;
         let allowed = DISAGREES[usize::from(kind != CoordinateKind::Rotation)];
         let by = (value - expected).abs();
-        if by <= allowed {
+        // What is neither an angle nor a length is written as it is by some programs, as an angle by others.
+        let as_angle = degrees
+            && kind == CoordinateKind::Other
+            && (value.to_radians() - expected).abs() <= DISAGREES[0];
+        if by <= allowed || as_angle {
             return;
         }
         let here = Disagreement {
