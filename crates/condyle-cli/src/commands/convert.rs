@@ -4,6 +4,7 @@ use super::{Limits, Outcome};
 use crate::failure::{Failure, warn_about, warned};
 use crate::motion_format as format;
 use crate::output;
+use crate::screen::say;
 use clap::{Args, ValueEnum};
 use condyle::formats::document::{self, Document};
 use condyle::formats::{Content, ContentKind, Format, Id, trc};
@@ -178,11 +179,11 @@ impl Convert {
         if self.limits == Limits::On {
             let changed = legal::keep(&model, &mut motion);
             if changed > 0 {
-                eprintln!(
+                say(&format!(
                     "note: {changed} of {} frames broke limits between segments: theirs is the nearest \
                      legal pose",
                     motion.frames.len()
-                );
+                ));
             }
         }
         match target.id {
@@ -233,11 +234,11 @@ fn rewritten(path: &Path, mut table: Table, target: &Format) -> Result<Vec<u8>, 
     if table.angle_unit == AngleUnit::Unstated {
         // A CSV file without a stated unit is in radians: this program writes it like that.
         if open::ending(path) != "csv" {
-            eprintln!(
+            say(&format!(
                 "warning: {}: the header does not state whether angles are in degrees; taken as \
                  radians (add the line inDegrees=yes if they are not)",
                 path.display()
-            );
+            ));
         }
         table.angle_unit = AngleUnit::Radians;
     }

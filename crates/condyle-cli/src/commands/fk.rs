@@ -3,6 +3,7 @@
 use super::{Limits, Outcome};
 use crate::failure::{Failure, warned};
 use crate::output;
+use crate::screen::say;
 use clap::Args;
 use condyle::formats::poses::Resolved;
 use condyle::{Mode, Model, Motion, Pose, Program, legal, open};
@@ -69,20 +70,20 @@ impl Fk {
         }
         for (id, count) in model.coordinate_ids().zip(ignored) {
             if count > 0 {
-                eprintln!(
+                say(&format!(
                     "warning: `{}` follows other coordinates; the value given for it was ignored in \
                      {count} of {} frames",
                     model.coordinate_key(id),
                     frames.len()
-                );
+                ));
             }
         }
         if solved > 0 {
-            eprintln!(
+            say(&format!(
                 "note: {solved} of {} frames broke limits between segments: theirs is the nearest legal \
                  pose",
                 frames.len()
-            );
+            ));
         }
         output::write(&self.output, format!("{}\n", json!({ "frames": frames })).as_bytes())?;
         Ok(Outcome::Done)
