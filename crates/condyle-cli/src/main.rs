@@ -7,6 +7,7 @@
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 mod commands;
+mod digest;
 mod failure;
 mod motion_format;
 mod output;

@@ -115,6 +115,16 @@ impl Output {
     }
 }
 
+/// Whether a path leads to standard output.
+pub(crate) fn is_standard(path: &Path) -> bool {
+    matches!(destination(path), Ok(Destination::Standard))
+}
+
+/// Whether a path leads to what is no file: standard output or input, a pipe or a device.
+pub(crate) fn is_stream(path: &Path) -> bool {
+    !matches!(destination(path), Ok(Destination::File { .. }) | Err(_))
+}
+
 fn destination(path: &Path) -> io::Result<Destination> {
     if path == Path::new("-") { Ok(Destination::Standard) } else { Destination::of(path) }
 }
@@ -154,7 +164,7 @@ pub(crate) fn check_distinct(inputs: &[&Path], outputs: &[&Path]) -> Result<(), 
     let inputs: Vec<_> =
         inputs.iter().filter_map(|path| Some((destination::Identity::of(path)?, path))).collect();
     let mut seen: Vec<(destination::Identity, &Path)> = vec![];
-    for path in outputs.iter().filter(|path| **path != Path::new("-")) {
+    for path in outputs.iter().filter(|path| !is_stream(path)) {
         let Some(identity) = destination::Identity::of(path) else { continue };
         let shown = path.display();
         if let Some((_, input)) = inputs.iter().find(|(input, _)| *input == identity) {
