@@ -1,5 +1,6 @@
 //! Files by path, with errors and warnings that carry the path.
 
+mod parts;
 mod source;
 
 use crate::shipped;
@@ -24,6 +25,7 @@ use source::{bytes, nameless_format};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+pub use parts::{MotionParts, motion_parts};
 pub use source::{is_standard_input, nameless_is};
 
 /// A file that could not be used.
@@ -154,7 +156,7 @@ pub fn content(path: &Path, wanted: Option<ContentKind>) -> Result<Read<Content>
     // A path without a known ending may still be a file that is recognised.
     let bytes = match (bytes(path), named) {
         (Ok(bytes), _) => bytes,
-        (Err(_), None) if !is_standard_input(path) => return Err(no_format()),
+        (Err(_), None) if !path.exists() && !is_standard_input(path) => return Err(no_format()),
         (Err(error), _) => return Err(error),
     };
     let found = named.or_else(|| Format::of_bytes(&bytes).filter(fits));
@@ -232,6 +234,9 @@ pub fn model(path: &Path) -> Result<Read<Model>, OpenError> {
 /// # Errors
 /// As [`content`].
 pub fn recording(path: &Path) -> Result<Read<Recording>, OpenError> {
+    if let Some(recording) = parts::recording(path) {
+        return Ok(Read::clean(recording));
+    }
     only(path, ContentKind::Recording, |content| match content {
         Content::Recording(recording) => Some(recording),
         _ => None,

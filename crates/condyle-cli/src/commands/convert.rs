@@ -7,10 +7,12 @@ use crate::output;
 use crate::screen::say;
 use clap::{Args, ValueEnum};
 use condyle::formats::document::{self, Document};
+use condyle::formats::poses::Poses;
 use condyle::formats::{Content, ContentKind, Format, Id, trc};
-use condyle::open::Cause;
+use condyle::open::{Cause, OpenError};
 use condyle::{
-    AngleUnit, Interpolation, Mode, Model, Motion, Program, Table, encode, legal, open, shipped,
+    AngleUnit, Error, Interpolation, Mode, Model, Motion, Program, Table, encode, legal, open,
+    shipped,
 };
 use std::path::{Path, PathBuf};
 
@@ -63,6 +65,9 @@ const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .cs
 impl Convert {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
         let target = self.target()?;
+        let inputs: Vec<&Path> =
+            [&self.input].into_iter().chain(&self.model).map(PathBuf::as_path).collect();
+        output::check_distinct(&inputs, &[&self.output])?;
         let read = match open::content(&self.input, None) {
             Err(error) if matches!(error.cause, Cause::Format { .. }) => {
                 return Err(self.unknown(target, ""));
@@ -75,9 +80,11 @@ impl Convert {
             return Err(Failure::new(format!("{what}: --rate is for poses (.json) with times")));
         }
         let bytes = match content {
-            Content::Poses(_) if target.id != Id::Document => self.motion_as(None, target)?,
+            Content::Poses(poses) if target.id != Id::Document => {
+                self.motion_as(Moving::Poses(poses), target)?
+            }
             Content::Table(table) if target.id != Id::Document => {
-                self.motion_as(Some(table), target)?
+                self.motion_as(Moving::Table(table), target)?
             }
             Content::Document(document) if target.id == Id::Document => {
                 self.document(document)?.into_bytes()
@@ -150,13 +157,15 @@ impl Convert {
         Ok(warned(&self.output, encode::scene(model, motion, self.mode(), None)?))
     }
 
-    /// A motion, or poses where there is no table.
-    fn motion_as(&self, table: Option<Table>, target: &Format) -> Result<Vec<u8>, Failure> {
-        let poses = table.is_none();
+    fn motion_as(&self, moving: Moving, target: &Format) -> Result<Vec<u8>, Failure> {
         let Some(model_path) = &self.model else {
             let what = format!("{}: without --model", self.input.display());
-            let Some(table) = table.filter(|_| target.writes.contains(&ContentKind::Motion)) else {
-                let from = if poses { "poses" } else { "a motion" };
+            let from = match moving {
+                Moving::Poses(_) => "poses",
+                Moving::Table(_) => "a motion",
+            };
+            let writes = target.writes.contains(&ContentKind::Motion);
+            let (Moving::Table(table), true) = (moving, writes) else {
                 let to = target.name;
                 return Err(Failure::new(format!(
                     "{what} {from} cannot be converted to .{to} ({KNOWN})"
@@ -168,9 +177,9 @@ impl Convert {
             return rewritten(&self.input, table, target);
         };
         let model = warned(model_path, open::model(model_path)?);
-        let mut motion = match table {
-            None => self.poses(&model)?,
-            Some(table) => {
+        let mut motion = match moving {
+            Moving::Poses(poses) => self.poses(&poses, &model)?,
+            Moving::Table(table) => {
                 let (motion, warnings) = Motion::from_table(&model, &table);
                 warn_about(&self.input, &warnings);
                 motion
@@ -195,11 +204,15 @@ impl Convert {
     }
 
     /// Poses as frames, or as keys between which a motion goes.
-    fn poses(&self, model: &Model) -> Result<Motion, Failure> {
-        let Some(rate) = self.rate else {
-            return Ok(warned(&self.input, open::poses(&self.input, model)?).motion);
+    fn poses(&self, poses: &Poses, model: &Model) -> Result<Motion, Failure> {
+        let fail = |error: Error| {
+            let cause = Cause::Content { error, text: None };
+            Failure::from(OpenError { path: self.input.clone(), cause })
         };
-        let keys = warned(&self.input, open::keys(&self.input, model)?);
+        let Some(rate) = self.rate else {
+            return Ok(poses.resolve(model).map_err(fail)?.motion);
+        };
+        let keys = poses.keys(model).map_err(fail)?;
         let between = match self.between {
             Curve::Linear => Interpolation::Linear,
             Curve::Spline => Interpolation::Spline,
@@ -227,6 +240,12 @@ impl Convert {
         let name = self.output.file_name().unwrap_or_default().to_string_lossy();
         Ok(trc::write(&recording, &name)?.into_bytes())
     }
+}
+
+/// What a motion is made from.
+enum Moving {
+    Poses(Poses),
+    Table(Table),
 }
 
 /// A table in another format, number by number, with the unit of its angles stated.
