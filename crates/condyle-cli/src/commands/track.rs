@@ -13,12 +13,11 @@ use crate::output::{self, Output};
 use crate::progress::frames_bar;
 use crate::screen::say;
 use clap::Args;
-use condyle::formats::{Format, Recording, csv};
-use condyle::tracking::{Job, Request, Tracking};
+use condyle::formats::Format;
+use condyle::tracking::{Job, Request};
 use condyle::{Model, open};
 use places::Places;
 use serde_json::{Value, json};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -169,10 +168,20 @@ impl Run<'_> {
         let holds = report.summary.failed.is_empty() && report.verdict.plausible;
         let mut results = vec![];
         if let Some(place) = &places.motion {
-            results.push(("motion", self.write_motion(place, trial, &recording, &tracking)?));
+            let (format, model, name) = (self.format, &self.model, places::stem(trial));
+            let write = |output: &mut Hashed<Output>| {
+                motion_format::write_tracked(
+                    output, place, format, model, &tracking, &name, &recording,
+                )
+            };
+            results.push(("motion", hashed(place, write)?));
         }
         if let Some(place) = &places.errors {
-            results.push(("errors", hashed(place, error_table(&tracking).as_bytes())?));
+            let write = |output: &mut Hashed<Output>| {
+                let written = motion_format::write_errors(output, &tracking);
+                written.map_err(|error| output::not_written(place, error))
+            };
+            results.push(("errors", hashed(place, write)?));
         }
         if !self.asked.is_quiet() {
             report::print(trial, &recording, &report, seconds)?;
@@ -184,40 +193,19 @@ impl Run<'_> {
         }
         Ok(Done { report, holds })
     }
-
-    /// Writes a motion, and answers with its digest.
-    fn write_motion(
-        &self,
-        place: &Path,
-        trial: &Path,
-        recording: &Recording,
-        tracking: &Tracking,
-    ) -> Result<String, Failure> {
-        let (model, motion) = (&self.model, &tracking.motion);
-        let markers = Some((recording, tracking.labels.as_slice()));
-        let remarks = tracking.remarks(model);
-        let name = places::stem(trial);
-        let bytes = motion_format::encoded(self.format, model, motion, &name, markers, &remarks)?;
-        hashed(place, &bytes)
-    }
 }
 
-/// Writes bytes, and answers with their digest.
-fn hashed(place: &Path, bytes: &[u8]) -> Result<String, Failure> {
-    let mut written = Hashed::new(Output::create(place)?);
-    written.write_all(bytes).map_err(|error| output::not_written(place, error))?;
-    let (written, digest) = written.finish();
-    written.finish().map(|()| digest)
+/// Writes a result, and answers with its digest.
+fn hashed(
+    place: &Path,
+    write: impl FnOnce(&mut Hashed<Output>) -> Result<(), Failure>,
+) -> Result<String, Failure> {
+    let mut output = Hashed::new(Output::create(place)?);
+    write(&mut output)?;
+    let (output, digest) = output.finish();
+    output.finish().map(|()| digest)
 }
 
 fn pretty(value: &Value) -> String {
     format!("{}\n", serde_json::to_string_pretty(value).unwrap_or_default())
-}
-
-fn error_table(tracking: &Tracking) -> String {
-    let rows = tracking.motion.times.iter().zip(&tracking.answers).flat_map(|(&time, answer)| {
-        let seen = tracking.markers.iter().zip(&answer.marker_errors);
-        seen.filter(|(_, e)| e.is_finite()).map(move |(name, &e)| (time, name.as_str(), e))
-    });
-    csv::write_marker_errors(rows)
 }
