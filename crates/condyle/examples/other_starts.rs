@@ -94,7 +94,7 @@ fn needless_jumps(
     let mut jumps = vec![];
     for frame in 0..tracking.answers.len().saturating_sub(1) {
         let [a, b] = [frame, frame + 1].map(|f| tracking.answers.coordinates(f));
-        let [p, q] = [a, b].map(|stored| turns(stored));
+        let [p, q] = [a, b].map(&mut turns);
         let segment = p.iter().zip(&q).map(|(p, q)| p.angle_to(*q)).enumerate();
         let segment = segment.max_by(|x, y| x.1.total_cmp(&y.1)).filter(|(_, turn)| *turn > JUMP);
         let rotation = |id: &CoordinateId| {
@@ -109,7 +109,8 @@ fn needless_jumps(
         let seen: Vec<_> =
             tracking.labels.iter().map(|&l| row.get(l).and_then(|o| o.position())).collect();
         let continued = tracker.solve_frame(&mut scratch, &seen, frame + 1, a);
-        let ratio = (continued.minimised() + 1e-12) / (tracking.answers.at(frame + 1).minimised() + 1e-12);
+        let ratio =
+            (continued.minimised() + 1e-12) / (tracking.answers.at(frame + 1).minimised() + 1e-12);
         if continued.status.is_solved() && ratio <= 1.001 {
             let segment = segment.map(|(i, turn)| {
                 format!("{} turns by {:.0} degrees, ", model.segments()[i].name, turn.to_degrees())
@@ -232,7 +233,8 @@ fn main() -> Result<(), Box<dyn Error>> {
                 .filter(|&id| model.coordinate(id).kind == CoordinateKind::Rotation)
                 .filter(|id| whole.trust_in(at + i)[id.index()] == Trust::Determined)
             {
-                let off = model.value(values, id) - model.value(whole.answers.coordinates(at + i), id);
+                let off =
+                    model.value(values, id) - model.value(whole.answers.coordinates(at + i), id);
                 let off = off.sin().atan2(off.cos()).abs().to_degrees();
                 let key = model.coordinate_key(id);
                 let entry = largest.entry(key).or_insert((0.0, 0));
@@ -241,7 +243,8 @@ fn main() -> Result<(), Box<dyn Error>> {
                 }
             }
         }
-        let ratio = |i: usize| part.answers.at(i).minimised() / whole.answers.at(at + i).minimised();
+        let ratio =
+            |i: usize| part.answers.at(i).minimised() / whole.answers.at(at + i).minimised();
         cuts.push(
             (0..part.answers.len())
                 .map(ratio)
