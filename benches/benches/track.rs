@@ -77,7 +77,7 @@ fn measure(name: String, model: &Model, recording: &Recording) -> Vec<String> {
         / summary.frames as f64;
     let program = Program::compile(model);
     let (mut pose, mut jacobian) = (Pose::new(&program), Jacobian::new(&program));
-    let frames = &tracking.motion.frames;
+    let frames = &tracking.motion().frames;
     let once = clock::nanoseconds(|i| {
         let stored = black_box(&frames[i % frames.len()]);
         let evaluated = program.evaluate_with_jacobian(stored, &mut pose, &mut jacobian);

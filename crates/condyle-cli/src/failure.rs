@@ -1,5 +1,6 @@
 //! Why a command failed, and warnings.
 
+use crate::screen::say;
 use condyle::formats::document;
 use condyle::open::{Cause, OpenError, located};
 use condyle::{Diagnostic, Error, Read};
@@ -53,6 +54,6 @@ pub(crate) fn warned<T>(path: &Path, read: Read<T>) -> T {
 /// Prints warnings about a file.
 pub(crate) fn warn_about(path: &Path, warnings: &[Diagnostic]) {
     for warning in warnings {
-        eprintln!("{}: {}", warning.severity.name(), located(path, warning));
+        say(&format!("{}: {}", warning.severity.name(), located(path, warning)));
     }
 }

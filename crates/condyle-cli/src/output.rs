@@ -1,55 +1,197 @@
 //! Output of results.
 
+mod destination;
+mod temporary;
+
 use crate::failure::Failure;
-use std::io::Write;
-use std::path::Path;
+use crate::screen::shown;
+use destination::Destination;
+use std::fs::{File, Metadata, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use temporary::Temporary;
 
-/// Writes bytes to a file by way of a temporary one beside it, or to standard output for `-`.
+/// Something being written to a path, or to standard output for `-`.
 ///
-/// A link stays a link, and what is no file, such as `/dev/null` or a pipe, is written to and not replaced.
-pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    if path == Path::new("-") {
-        return print(bytes);
-    }
-    let fail = |error: std::io::Error| Failure::new(format!("{}: {error}", path.display()));
-    if let Some(folder) = path.parent().filter(|f| !f.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder).map_err(fail)?;
-    }
-    let linked = path.is_symlink().then(|| std::fs::canonicalize(path).ok()).flatten();
-    let place = linked.as_deref().unwrap_or(path);
-    if !is_replaceable(place) {
-        return std::fs::write(place, bytes).map_err(fail);
-    }
-    let mut name = place.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".{}.part", std::process::id()));
-    let temporary = place.with_file_name(name);
-    let written =
-        std::fs::write(&temporary, bytes).and_then(|()| std::fs::rename(&temporary, place));
-    written.map_err(|error| {
-        let _ = std::fs::remove_file(&temporary);
-        fail(error)
-    })
+/// A file is written under another name in the same folder and takes its place when finished, so that
+/// there is never half of one; if it is dropped before, the old file stays. Its mode is kept and links to
+/// it stay links. A file of several names is overwritten when finished, and what is no file, such as a
+/// device or a pipe, is written to as the bytes come.
+#[derive(Debug)]
+pub(crate) struct Output {
+    path: PathBuf,
+    sink: Sink,
+    /// Whether who reads standard output wants no more.
+    closed: bool,
 }
 
-/// Whether a place is a file or free.
-fn is_replaceable(place: &Path) -> bool {
-    std::fs::symlink_metadata(place).map_or(true, |known| known.is_file())
+#[derive(Debug)]
+enum Sink {
+    Standard,
+    StandardError,
+    Through(File),
+    Replaced { temporary: Temporary, place: PathBuf, shared: bool },
 }
 
-/// Writes to standard output; a closed pipe is no error.
-pub(crate) fn print(bytes: &[u8]) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
-    match out.write_all(bytes).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Failure::new(format!("standard output: {error}")))
+impl Output {
+    pub(crate) fn create(path: &Path) -> Result<Self, Failure> {
+        let fail = |error: io::Error| Failure::new(format!("{}: {error}", path.display()));
+        let sink = match destination(path).map_err(fail)? {
+            Destination::Standard => Sink::Standard,
+            Destination::StandardError => Sink::StandardError,
+            Destination::Descriptor(place) => {
+                Sink::Through(OpenOptions::new().append(true).open(place).map_err(fail)?)
+            }
+            Destination::Device(place) => {
+                Sink::Through(OpenOptions::new().write(true).open(place).map_err(fail)?)
+            }
+            Destination::File { place, existing } => replaced(path, place, existing)?,
+        };
+        Ok(Self { path: path.to_owned(), sink, closed: false })
+    }
+
+    /// Whether nobody reads what is still to come.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// Puts what was written in its place.
+    pub(crate) fn finish(mut self) -> Result<(), Failure> {
+        let done = self.flush().and_then(|()| match self.sink {
+            Sink::Replaced { temporary, place, shared: true } => temporary.copy_to(&place),
+            Sink::Replaced { temporary, place, shared: false } => temporary.rename_to(&place),
+            _ => Ok(()),
+        });
+        done.map_err(|error| not_written(&self.path, error))
+    }
+}
+
+/// The failure of a write to a path.
+pub(crate) fn not_written(path: &Path, error: io::Error) -> Failure {
+    let name = match path == Path::new("-") {
+        true => "standard output".to_owned(),
+        false => path.display().to_string(),
+    };
+    Failure::new(format!("{name}: {error}"))
+}
+
+impl Write for Output {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.closed {
+            return Ok(bytes.len());
         }
-        _ => Ok(()),
+        let written = match &mut self.sink {
+            Sink::Standard => io::stdout().write(bytes),
+            Sink::StandardError => io::stderr().write(bytes),
+            Sink::Through(file) => file.write(bytes),
+            Sink::Replaced { temporary, .. } => temporary.write(bytes),
+        };
+        match written {
+            Err(error) if self.is_standard() && error.kind() == io::ErrorKind::BrokenPipe => {
+                self.closed = true;
+                Ok(bytes.len())
+            }
+            written => written,
+        }
     }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match &mut self.sink {
+            Sink::Standard if !self.closed => match io::stdout().flush() {
+                Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {
+                    self.closed = true;
+                    Ok(())
+                }
+                flushed => flushed,
+            },
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Output {
+    fn is_standard(&self) -> bool {
+        matches!(self.sink, Sink::Standard)
+    }
+}
+
+/// Whether a path leads to standard output.
+pub(crate) fn is_standard(path: &Path) -> bool {
+    matches!(destination(path), Ok(Destination::Standard))
+}
+
+/// Whether a path leads to what is no file: standard output or input, a pipe or a device.
+pub(crate) fn is_stream(path: &Path) -> bool {
+    !matches!(destination(path), Ok(Destination::File { .. }) | Err(_))
+}
+
+fn destination(path: &Path) -> io::Result<Destination> {
+    if path == Path::new("-") { Ok(Destination::Standard) } else { Destination::of(path) }
+}
+
+/// A temporary file for a place, with the mode of the file that is there.
+fn replaced(path: &Path, place: PathBuf, existing: Option<Metadata>) -> Result<Sink, Failure> {
+    let fail =
+        |what: &str, error: io::Error| Failure::new(format!("{}: {what}: {error}", path.display()));
+    if let Some(folder) = path.parent().filter(|f| !f.as_os_str().is_empty()) {
+        std::fs::create_dir_all(folder)
+            .map_err(|error| fail(&format!("the folder {}", folder.display()), error))?;
+    }
+    if existing.is_some() {
+        // Who may not write to a file may not replace it either.
+        OpenOptions::new()
+            .write(true)
+            .open(&place)
+            .map_err(|error| fail("the file cannot be written to", error))?;
+    }
+    let temporary = Temporary::beside(&place, existing.as_ref()).map_err(|error| {
+        let folder = temporary::folder_of(&place);
+        fail(&format!("no file can be made in the folder {}", folder.display()), error)
+    })?;
+    let shared = existing.is_some_and(|known| destination::names(&known) > 1);
+    Ok(Sink::Replaced { temporary, place, shared })
+}
+
+/// Writes all of an [`Output`].
+pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let mut output = Output::create(path)?;
+    output.write_all(bytes).map_err(|error| not_written(path, error))?;
+    output.finish()
+}
+
+/// Refuses to write to a file that is read in the same call, or to one file twice.
+pub(crate) fn check_distinct(inputs: &[&Path], outputs: &[&Path]) -> Result<(), Failure> {
+    let inputs: Vec<_> =
+        inputs.iter().filter_map(|path| Some((destination::Identity::of(path)?, path))).collect();
+    let mut seen: Vec<(destination::Identity, &Path)> = vec![];
+    for path in outputs.iter().filter(|path| !is_stream(path)) {
+        let Some(identity) = destination::Identity::of(path) else { continue };
+        let shown = path.display();
+        if let Some((_, input)) = inputs.iter().find(|(input, _)| *input == identity) {
+            return Err(Failure::new(format!(
+                "{shown}: this file is also an input ({}): give another place to write to",
+                input.display()
+            )));
+        }
+        if let Some((_, other)) = seen.iter().find(|(other, _)| *other == identity) {
+            return Err(Failure::new(format!(
+                "{shown}: two results would be written to this file ({}): give each a place of its own",
+                other.display()
+            )));
+        }
+        seen.push((identity, path));
+    }
+    Ok(())
+}
+
+/// Writes text for people to standard output; a closed pipe is no error.
+pub(crate) fn print(text: &[u8]) -> Result<(), Failure> {
+    write(Path::new("-"), shown(&String::from_utf8_lossy(text)).as_bytes())
 }
 
 /// Prints one JSON document.
 pub(crate) fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
-    print(format!("{value}\n").as_bytes())
+    write(Path::new("-"), format!("{value}\n").as_bytes())
 }
 
 /// A table whose columns are as wide as their widest cell; numbers to the right.
@@ -91,30 +233,4 @@ pub(crate) fn wrapped(head: &str, names: &[&str]) -> String {
     }
     text.push('\n');
     text
-}
-
-#[cfg(all(test, unix))]
-mod tests {
-    use super::*;
-    use std::os::unix::fs::symlink;
-
-    #[test]
-    fn links_and_devices_are_written_to_and_stay() {
-        let folder = std::env::temp_dir().join(format!("condyle-output-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).unwrap();
-        let [file, link, loose] = ["motion.mot", "link.mot", "loose"].map(|name| folder.join(name));
-        std::fs::write(&file, "old").unwrap();
-        symlink(&file, &link).unwrap();
-        symlink(folder.join("nowhere"), &loose).unwrap();
-        for place in [&link, &loose] {
-            write(place, b"new").unwrap();
-            assert!(place.is_symlink(), "{}", place.display());
-        }
-        assert_eq!(std::fs::read(&file).unwrap(), b"new");
-        assert_eq!(std::fs::read(folder.join("nowhere")).unwrap(), b"new");
-        // Not written to here: if this were wrong, the machine would lose it.
-        assert!(!is_replaceable(Path::new("/dev/null")));
-        assert!(is_replaceable(&file) && is_replaceable(&folder.join("new.mot")));
-        std::fs::remove_dir_all(&folder).unwrap();
-    }
 }

@@ -1,5 +1,6 @@
 //! Progress bars, on a terminal only.
 
+use crate::screen::shown;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 
@@ -14,6 +15,6 @@ pub(crate) fn frames_bar(what: &str) -> ProgressBar {
     if let Ok(style) = style {
         bar.set_style(style);
     }
-    bar.set_message(what.to_owned());
+    bar.set_message(shown(what).into_owned());
     bar
 }

@@ -36,7 +36,7 @@ fn a_clean_recording_gives_the_motion_back() {
     let truth = walk(&model, 150, 100.0);
     let flaws = Flaws { noise: 0.0, missing: 0.0, swap: None, seed: 3 };
     let tracking = run(&model, &record(&model, &truth, &flaws), &Request::default());
-    let (rms, max) = angle_errors(&model, &tracking.motion, &truth);
+    let (rms, max) = angle_errors(&model, &tracking.motion(), &truth);
     // Left to the tolerance: a relative decrease of 1e-6 of nothing much.
     assert!(rms < 1e-3 && max < 0.02, "{rms} {max}");
     assert!(tracking.answers.iter().all(|a| a.status.is_solved()));
@@ -50,7 +50,7 @@ fn noise_is_averaged_and_gaps_are_bridged() {
     let recording = record(&model, &truth, &flaws);
     assert!(recording.missing() > 300, "the recording has gaps");
     let tracking = run(&model, &recording, &Request::default());
-    let (rms, max) = angle_errors(&model, &tracking.motion, &truth);
+    let (rms, max) = angle_errors(&model, &tracking.motion(), &truth);
     // Markers 5 to 15 cm from their axes, 2 mm of noise on two to four of them a joint: 0.5 to 1.5
     // degrees. Where a gap leaves a foot one marker its angles are far off for a moment, so the
     // largest error says nothing.
@@ -77,8 +77,8 @@ fn swapped_labels_are_found_and_put_right() {
     names.sort();
     assert_eq!(names, ["L.Knee".to_owned(), "R.Knee".to_owned()]);
     assert!(frames.start.abs_diff(60) <= 12 && frames.end.abs_diff(110) <= 12, "{frames:?}");
-    let (off_plain, _) = angle_errors(&model, &plain.motion, &truth);
-    let (off_robust, _) = angle_errors(&model, &robust.motion, &truth);
+    let (off_plain, _) = angle_errors(&model, &plain.motion(), &truth);
+    let (off_robust, _) = angle_errors(&model, &robust.motion(), &truth);
     assert!(off_robust < 1.0 && off_plain > 3.0 * off_robust, "{off_plain} {off_robust}");
     // Without the option nothing is reported and nothing is changed.
     assert!(plain.swaps.is_empty());
@@ -97,7 +97,7 @@ fn frames_without_markers_are_marked_and_the_run_goes_on() {
     assert_eq!(failed, (30..45).collect::<Vec<_>>());
     let (rms, _) = angle_errors(
         &model,
-        &Motion { times: vec![], frames: tracking.motion.frames[45..].to_vec() },
+        &Motion { times: vec![], frames: tracking.motion().frames[45..].to_vec() },
         &Motion { times: vec![], frames: truth.frames[45..].to_vec() },
     );
     assert!(rms < 1.0, "{rms}");
@@ -113,8 +113,8 @@ fn an_answer_does_not_depend_on_where_the_recording_was_cut() {
     let part =
         run(&model, &recording, &Request { time_range: Some([0.5, 1.5]), ..Request::default() });
     assert_eq!(part.frames, 50..151);
-    let same = Motion { times: vec![], frames: whole.motion.frames[50..151].to_vec() };
-    let (_, max) = angle_errors(&model, &part.motion, &same);
+    let same = Motion { times: vec![], frames: whole.motion().frames[50..151].to_vec() };
+    let (_, max) = angle_errors(&model, &part.motion(), &same);
     assert!(max < 0.02, "{max} degrees");
 }
 
@@ -150,7 +150,7 @@ fn postures_and_values_are_asked_for_by_name() {
         ..Request::default()
     };
     let held = at(&stiff(0.3));
-    let value = |t: &Tracking| t.motion.frames[69][place];
+    let value = |t: &Tracking| t.motion().frames[69][place];
     assert!((value(&held) - 0.15).abs() < 1e-4, "{}", value(&held));
     assert!((value(&free) - value(&held)).abs() > 0.01, "{}", value(&free));
     let (summary, report) = (held.summary(), held.report(&model));

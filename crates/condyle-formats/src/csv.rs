@@ -115,6 +115,11 @@ pub fn write(table: &Table) -> Result<String, Error> {
     if let Some(mismatch) = table.mismatch() {
         return Err(Error::new("csv/shape", mismatch));
     }
+    Ok(head(table) + &rows(table))
+}
+
+/// The lines before the rows.
+pub fn head(table: &Table) -> String {
     let mut text = match table.angle_unit {
         AngleUnit::Degrees => "# inDegrees=yes\ntime".to_owned(),
         AngleUnit::Radians | AngleUnit::Unstated => "time".to_owned(),
@@ -124,6 +129,12 @@ pub fn write(table: &Table) -> Result<String, Error> {
         text.push_str(&quoted(column));
     }
     text.push('\n');
+    text
+}
+
+/// The rows of a table, which may be some of many.
+pub fn rows(table: &Table) -> String {
+    let mut text = String::new();
     for (row, time) in table.times.iter().enumerate() {
         text.push_str(&decimal(*time));
         for value in table.row(row) {
@@ -134,7 +145,7 @@ pub fn write(table: &Table) -> Result<String, Error> {
         }
         text.push('\n');
     }
-    Ok(text)
+    text
 }
 
 /// Writes the error of each marker: rows of time in seconds, marker, and error in metres, under the

@@ -22,6 +22,7 @@
 //! | [`Targets`] | what is tracked: markers, coordinates, postures, loops |
 //! | [`Tracker`] | one model and its targets, ready to solve frames by its [`Rules`] |
 //! | [`FrameAnswer`] | one frame: posture, fit, status |
+//! | [`Answers`] | many frames, packed |
 //! | [`Trust`] | how far each coordinate of a frame follows from the markers |
 //! | [`Stream`] | frames as they come |
 //! | [`sequence`] | many frames: cut, solve a chunk, stitch |
@@ -49,6 +50,7 @@
 //! Nothing here reads a file, starts a thread, or depends on how many there are.
 
 mod answer;
+mod answers;
 mod branch;
 mod frame;
 pub mod goal;
@@ -63,6 +65,7 @@ mod tracker;
 mod trust;
 
 pub use answer::{FrameAnswer, FrameStatus};
+pub use answers::{Answers, Run};
 pub use recorded::Recorded;
 pub use sequence::{Chunk, cut, stitch};
 pub use stream::Stream;

@@ -8,6 +8,7 @@
 //!    postures wins and the other chunk is solved again from the seam ([`stitch`]).
 
 use crate::answer::FrameAnswer;
+use crate::answers::{Answers, Run};
 use crate::frame::TURN;
 use crate::recorded::Recorded;
 use crate::tracker::{Scratch, Tracker};
@@ -155,41 +156,57 @@ pub fn stitch(
     scratch: &mut Scratch,
     recorded: &dyn Recorded,
     chunks: &[Chunk],
-    mut answers: Vec<Vec<FrameAnswer>>,
+    answers: Vec<Vec<FrameAnswer>>,
 ) -> Vec<FrameAnswer> {
+    let runs = answers.iter().map(|answers| Run::of(answers)).collect();
+    stitch_runs(tracker, scratch, recorded, chunks, runs).iter().collect()
+}
+
+/// Joins the chunks' answers, each packed, into one for each frame.
+pub fn stitch_runs(
+    tracker: &Tracker,
+    scratch: &mut Scratch,
+    recorded: &dyn Recorded,
+    chunks: &[Chunk],
+    mut runs: Vec<Run>,
+) -> Answers {
+    let total = chunks.last().map_or(0, |c| c.frames.end);
     // Forwards: a chunk that began worse than the one before it ended starts again from there.
     for i in 1..chunks.len() {
-        let Some(seam) = answers[i - 1].get(chunks[i - 1].frames.len()).cloned() else { continue };
-        let mut begun = answers[i][0].clone();
+        let Some(seam) = runs[i - 1].get(chunks[i - 1].frames.len()) else { continue };
+        let Some(mut begun) = runs[i].get(0) else { continue };
         tracker.branches.bring_near(&mut begun.coordinates, &seam.coordinates, &tracker.stored);
         if tracker.replaces(&seam, &begun) {
-            let total = chunks.last().map_or(0, |c| c.frames.end);
-            answers[i] = solve_chunk(tracker, scratch, recorded, &chunks[i], &seam, total);
+            let again = solve_chunk(tracker, scratch, recorded, &chunks[i], &seam, total);
+            runs[i] = Run::of(&again);
         }
     }
     // Backwards: a chunk that ended worse than the next one began is walked back from the seam for
     // as long as that helps.
     for i in (1..chunks.len()).rev() {
         let length = chunks[i - 1].frames.len();
-        let Some(seam) = answers[i - 1].get(length) else { continue };
-        let mut from = answers[i][0].clone();
+        let Some(seam) = runs[i - 1].get(length) else { continue };
+        let Some(mut from) = runs[i].get(0) else { continue };
         tracker.branches.bring_near(&mut from.coordinates, &seam.coordinates, &tracker.stored);
-        if !tracker.replaces(&from, seam) {
+        if !tracker.replaces(&from, &seam) {
             continue;
         }
-        answers[i - 1][length] = from;
-        walk_back(tracker, scratch, recorded, chunks[i - 1].frames.start, &mut answers[i - 1]);
+        let mut answers = runs[i - 1].unpacked();
+        answers[length] = from;
+        walk_back(tracker, scratch, recorded, chunks[i - 1].frames.start, &mut answers);
+        runs[i - 1] = Run::of(&answers);
     }
-    let lengths: Vec<usize> = chunks.iter().map(|c| c.frames.len()).collect();
-    let frames = answers.into_iter().zip(lengths);
-    let mut answers: Vec<FrameAnswer> =
-        frames.flat_map(|(answers, length)| answers.into_iter().take(length)).collect();
+    for (run, chunk) in runs.iter_mut().zip(chunks) {
+        run.truncate(chunk.frames.len());
+    }
+    let mut answers = Answers::of_runs(runs);
     review(tracker, scratch, recorded, &mut answers);
     // Of all numbers for a posture those that go on from the frame before.
+    let mut before = answers.get(0).map(|first| first.coordinates).unwrap_or_default();
     for frame in 1..answers.len() {
-        let (before, rest) = answers.split_at_mut(frame);
-        let before = &before[frame - 1].coordinates;
-        tracker.branches.bring_near(&mut rest[0].coordinates, before, &tracker.stored);
+        let own = answers.coordinates_mut(frame);
+        tracker.branches.bring_near(own, &before, &tracker.stored);
+        before.copy_from_slice(own);
     }
     answers
 }
@@ -209,21 +226,23 @@ fn review(
     tracker: &Tracker,
     scratch: &mut Scratch,
     recorded: &dyn Recorded,
-    answers: &mut [FrameAnswer],
+    answers: &mut Answers,
 ) {
-    let value = |answer: &FrameAnswer| answer.minimised();
-    let mut sorted: Vec<f64> = answers.iter().map(value).collect();
+    let mut sorted: Vec<f64> = (0..answers.len()).map(|frame| answers.minimised(frame)).collect();
     sorted.sort_by(f64::total_cmp);
     let Some(&median) = sorted.get(sorted.len() / 2) else { return };
-    let mut order: Vec<usize> = (0..answers.len()).collect();
-    order.sort_by(|&a, &b| value(&answers[b]).total_cmp(&value(&answers[a])));
+    drop(sorted);
+    let high = |frame: &usize| answers.minimised(*frame) > HIGH * median + 1e-6;
+    let mut order: Vec<usize> = (0..answers.len()).filter(high).collect();
+    order.sort_by(|&a, &b| answers.minimised(b).total_cmp(&answers.minimised(a)));
     let (mut looked, mut in_vain): (Vec<usize>, usize) = (vec![], 0);
     let mut seen = vec![];
     for frame in order {
         if looked.len() > answers.len() / REVIEWED || in_vain >= IN_VAIN {
             break;
         }
-        let high = value(&answers[frame]) > HIGH * median + 1e-6;
+        // It may have become better since.
+        let high = answers.minimised(frame) > HIGH * median + 1e-6;
         if !high || looked.iter().any(|other| other.abs_diff(frame) < APART) {
             continue;
         }
@@ -231,20 +250,29 @@ fn review(
         recorded.positions(frame, &mut seen);
         let mut again = tracker.solve_anew(scratch, &seen, frame, FIRST_GUESSES);
         let numbers = &mut again.coordinates;
-        tracker.branches.bring_near(numbers, &answers[frame].coordinates, &tracker.stored);
-        if !tracker.replaces(&again, &answers[frame]) {
+        tracker.branches.bring_near(numbers, answers.coordinates(frame), &tracker.stored);
+        if !tracker.replaces(&again, &answers.at(frame)) {
             in_vain += 1;
             continue;
         }
         in_vain = 0;
-        answers[frame] = again;
-        walk_back(tracker, scratch, recorded, 0, &mut answers[..=frame]);
-        for next in frame + 1..answers.len() {
-            let before = answers[next - 1].clone();
-            let again = run(tracker, scratch, recorded, next..next + 1, &before);
-            match again.into_iter().next() {
-                Some(again) if tracker.replaces(&again, &answers[next]) => answers[next] = again,
-                _ => break,
+        answers.set(frame, &again);
+        // What is better goes on to the frames before and after.
+        let mut follow = |from: usize, to: usize, answers: &mut Answers| {
+            let start = answers.at(from);
+            let again = run(tracker, scratch, recorded, to..to + 1, &start);
+            let again = again.into_iter().next();
+            let taken = again.filter(|again| tracker.replaces(again, &answers.at(to)));
+            taken.inspect(|again| answers.set(to, again)).is_some()
+        };
+        for before in (0..frame).rev() {
+            if !follow(before + 1, before, answers) {
+                break;
+            }
+        }
+        for after in frame + 1..answers.len() {
+            if !follow(after - 1, after, answers) {
+                break;
             }
         }
     }

@@ -92,9 +92,9 @@ fn needless_jumps(
         model.segment_ids().map(|id| Quat::from_mat3(pose.segment(id).linear)).collect()
     };
     let mut jumps = vec![];
-    for (frame, pair) in tracking.answers.windows(2).enumerate() {
-        let [a, b] = [&pair[0].coordinates, &pair[1].coordinates];
-        let [p, q] = [a, b].map(|stored| turns(stored));
+    for frame in 0..tracking.answers.len().saturating_sub(1) {
+        let [a, b] = [frame, frame + 1].map(|f| tracking.answers.coordinates(f));
+        let [p, q] = [a, b].map(&mut turns);
         let segment = p.iter().zip(&q).map(|(p, q)| p.angle_to(*q)).enumerate();
         let segment = segment.max_by(|x, y| x.1.total_cmp(&y.1)).filter(|(_, turn)| *turn > JUMP);
         let rotation = |id: &CoordinateId| {
@@ -109,7 +109,8 @@ fn needless_jumps(
         let seen: Vec<_> =
             tracking.labels.iter().map(|&l| row.get(l).and_then(|o| o.position())).collect();
         let continued = tracker.solve_frame(&mut scratch, &seen, frame + 1, a);
-        let ratio = (continued.minimised() + 1e-12) / (pair[1].minimised() + 1e-12);
+        let ratio =
+            (continued.minimised() + 1e-12) / (tracking.answers.at(frame + 1).minimised() + 1e-12);
         if continued.status.is_solved() && ratio <= 1.001 {
             let segment = segment.map(|(i, turn)| {
                 format!("{} turns by {:.0} degrees, ", model.segments()[i].name, turn.to_degrees())
@@ -178,7 +179,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let row = recording.frame(whole.frames.start + frame);
         let seen: Vec<_> =
             whole.labels.iter().map(|&l| row.get(l).and_then(|o| o.position())).collect();
-        let answer = &whole.answers[frame];
+        let answer = whole.answers.at(frame);
         let mut best = (answer.minimised(), "tracked", String::new());
         let first = tracker.solve_first(&mut scratch, &seen, frame, 4);
         let mut offer = |f: f64, name, stored: &[f64]| {
@@ -189,8 +190,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         if first.status.is_solved() {
             offer(first.minimised(), "first guesses", &first.coordinates);
         }
-        if within(&model, &unlimited.answers[frame].coordinates) {
-            let other = &unlimited.answers[frame];
+        let other = unlimited.answers.at(frame);
+        if within(&model, &other.coordinates) {
             offer(other.minimised(), "limits off", &other.coordinates);
         }
         for i in 0..9 {
@@ -221,18 +222,19 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut largest = std::collections::BTreeMap::<String, (f64, usize)>::new();
     for cut in 1..=20 {
         let at = cut * n / 21;
-        let times = &whole.motion.times;
+        let times = &whole.times;
         let to = times[(at + 40).min(n - 1)];
         let part = Request { time_range: Some([times[at], to]), ..request.clone() };
         let Ok(job) = Job::new(Arc::clone(&model), &recording, &part) else { continue };
         let part = job.run(&mut |_, _| {});
-        for (i, values) in part.motion.frames.iter().enumerate() {
+        for (i, values) in part.motion().frames.iter().enumerate() {
             for id in model
                 .coordinate_ids()
                 .filter(|&id| model.coordinate(id).kind == CoordinateKind::Rotation)
-                .filter(|id| whole.trust[at + i][id.index()] == Trust::Determined)
+                .filter(|id| whole.trust_in(at + i)[id.index()] == Trust::Determined)
             {
-                let off = model.value(values, id) - model.value(&whole.motion.frames[at + i], id);
+                let off =
+                    model.value(values, id) - model.value(whole.answers.coordinates(at + i), id);
                 let off = off.sin().atan2(off.cos()).abs().to_degrees();
                 let key = model.coordinate_key(id);
                 let entry = largest.entry(key).or_insert((0.0, 0));
@@ -241,7 +243,8 @@ fn main() -> Result<(), Box<dyn Error>> {
                 }
             }
         }
-        let ratio = |i: usize| part.answers[i].minimised() / whole.answers[at + i].minimised();
+        let ratio =
+            |i: usize| part.answers.at(i).minimised() / whole.answers.at(at + i).minimised();
         cuts.push(
             (0..part.answers.len())
                 .map(ratio)

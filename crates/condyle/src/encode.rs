@@ -32,17 +32,54 @@ pub fn motion(
     match format.id {
         #[cfg(feature = "glb")]
         Id::Glb => scene(model, motion, Mode::Open, markers),
-        Id::Csv => {
-            let mut table = motion.to_table(model, name);
-            // A table for programs: the units of the library.
-            table.values = motion.frames.concat();
-            table.angle_unit = AngleUnit::Radians;
-            self::table(format, &table).map(Read::clean)
-        }
         _ => {
-            let table = Table { header: remarks.to_vec(), ..motion.to_table(model, name) };
+            let table = motion_table(format, model, motion, name, remarks);
             self::table(format, &table).map(Read::clean)
         }
+    }
+}
+
+/// A motion of a model, or a part of one, as the table that a format holds: in degrees, or in radians and
+/// metres for a CSV.
+pub fn motion_table(
+    format: &Format,
+    model: &Model,
+    motion: &Motion,
+    name: &str,
+    remarks: &[(String, String)],
+) -> Table {
+    let mut table = motion.to_table(model, name);
+    if format.id == Id::Csv {
+        // A table for programs: the units of the library.
+        table.values = motion.frames.concat();
+        table.angle_unit = AngleUnit::Radians;
+    } else {
+        table.header = remarks.to_vec();
+    }
+    table
+}
+
+/// The lines before the rows of a table that will have so many of them, some of which are in `part`.
+///
+/// # Errors
+/// As [`table`].
+pub fn table_head(format: &Format, part: &Table, rows: usize) -> Result<String, Error> {
+    match format.id {
+        Id::Mot | Id::Sto => sto::head(part, rows),
+        Id::Csv => Ok(csv::head(part)),
+        _ => Err(not_written(format, ContentKind::Motion)),
+    }
+}
+
+/// The rows of a part of a table: after [`table_head`] and the rows of all parts it is what [`table`] gives.
+///
+/// # Errors
+/// As [`table`].
+pub fn table_rows(format: &Format, part: &Table) -> Result<String, Error> {
+    match format.id {
+        Id::Mot | Id::Sto => Ok(sto::rows(part)),
+        Id::Csv => Ok(csv::rows(part)),
+        _ => Err(not_written(format, ContentKind::Motion)),
     }
 }
 

@@ -93,7 +93,7 @@
 //!     units: LengthUnit::Metre,
 //! };
 //! let tracking = track(&model, &recording, &Request::default(), &mut |_, _| {})?;
-//! let flexion = tracking.motion.frames[0][0];
+//! let flexion = tracking.motion().frames[0][0];
 //! assert!((flexion - f64::atan2(0.20, 0.35)).abs() < 1e-5);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

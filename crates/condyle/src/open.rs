@@ -1,5 +1,8 @@
 //! Files by path, with errors and warnings that carry the path.
 
+mod parts;
+mod source;
+
 use crate::shipped;
 #[cfg(any(feature = "document", feature = "opensim"))]
 use crate::tracking::Request;
@@ -18,8 +21,12 @@ use condyle_model::Model;
 #[cfg(feature = "poses")]
 use condyle_motion::Keys;
 use condyle_motion::{Motion, Recording, Table};
+use source::{bytes, nameless_format};
 use std::fmt;
 use std::path::{Path, PathBuf};
+
+pub use parts::{MotionParts, motion_parts};
+pub use source::{is_standard_input, nameless_is};
 
 /// A file that could not be used.
 #[derive(Debug)]
@@ -68,6 +75,11 @@ impl fmt::Display for OpenError {
                 let lines: Vec<String> = error.iter().map(|e| located(&self.path, e)).collect();
                 f.write_str(&lines.join("\n"))
             }
+            Cause::Format { wanted } if is_standard_input(&self.path) => write!(
+                f,
+                "standard input: its content is not recognised as {}: name its format",
+                wanted.map_or("that of any format", ContentKind::name)
+            ),
             Cause::Format { wanted: Some(kind) } => write!(
                 f,
                 "{path}: the ending names no format for {} (known are {})",
@@ -111,22 +123,8 @@ pub fn located(path: &Path, said: &Diagnostic) -> String {
     format!("{}{place}: {}", path.display(), said.sentence())
 }
 
-/// The largest file that is read, in bytes.
-const LARGEST: u64 = 1 << 30;
-
 fn failed(path: &Path, cause: Cause) -> OpenError {
     OpenError { path: path.to_owned(), cause }
-}
-
-fn bytes(path: &Path) -> Result<Vec<u8>, OpenError> {
-    let fail = |error| failed(path, Cause::Io(error));
-    let size = std::fs::metadata(path).map_err(fail)?.len();
-    if size > LARGEST {
-        let error = Error::new("file/size", format!("the file has {size} bytes"))
-            .with_help(format!("at most {LARGEST} are read"));
-        return Err(failed(path, Cause::Content { error, text: None }));
-    }
-    std::fs::read(path).map_err(fail)
 }
 
 /// The ending of a path in lower case, without its dot.
@@ -134,8 +132,8 @@ pub fn ending(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
-/// Opens a file of any format, by its ending or else by its content. Where there is no such file,
-/// the name of a [`shipped`] model does. A setup comes with its tasks, if those have a file of their
+/// Opens a file of any format, by its ending or else by its content; `-` is standard input. Where there is
+/// no such file, the name of a [`shipped`] model does. A setup comes with its tasks, if those have a file of their
 /// own.
 ///
 /// # Errors
@@ -144,21 +142,22 @@ pub fn ending(path: &Path) -> String {
 pub fn content(path: &Path, wanted: Option<ContentKind>) -> Result<Read<Content>, OpenError> {
     #[cfg(feature = "document")]
     if wanted.is_none_or(|kind| kind == ContentKind::Model)
+        && !is_standard_input(path)
         && let Some(name) = shipped::asked_for(path)
     {
         return Ok(shipped::read(name)?.map(Content::Document));
     }
     let no_format = || failed(path, Cause::Format { wanted });
     let fits = |format: &&Format| wanted.is_none_or(|kind| format.reads.contains(&kind));
-    let named = Format::of_ending(&ending(path));
+    let named = Format::of_ending(&ending(path)).or_else(|| nameless_format(path));
     if named.is_some_and(|format| !fits(&format)) {
         return Err(no_format());
     }
     // A path without a known ending may still be a file that is recognised.
     let bytes = match (bytes(path), named) {
         (Ok(bytes), _) => bytes,
-        (Err(_), None) => return Err(no_format()),
-        (Err(error), Some(_)) => return Err(error),
+        (Err(_), None) if !path.exists() && !is_standard_input(path) => return Err(no_format()),
+        (Err(error), _) => return Err(error),
     };
     let found = named.or_else(|| Format::of_bytes(&bytes).filter(fits));
     let format = found.ok_or_else(no_format)?;
@@ -251,6 +250,9 @@ pub fn model(path: &Path) -> Result<Read<Model>, OpenError> {
 /// # Errors
 /// As [`content`].
 pub fn recording(path: &Path) -> Result<Read<Recording>, OpenError> {
+    if let Some(recording) = parts::recording(path) {
+        return Ok(Read::clean(recording));
+    }
     only(path, ContentKind::Recording, |content| match content {
         Content::Recording(recording) => Some(recording),
         _ => None,
@@ -343,6 +345,7 @@ pub fn names(path: &Path) -> Result<Read<NameTable>, OpenError> {
             .map_err(|error| failed(path, Cause::Content { error, text: Some(text.to_owned()) }));
     }
     let word = path.to_str().filter(|word| !word.contains(['.', '/', '\\']) && !path.exists());
+    let word = word.filter(|_| !is_standard_input(path));
     if let Some(word) = word {
         let shipped: Vec<&str> = shipped::name_tables().collect();
         let message = format!("`{word}` is neither a file nor a shipped table of names");

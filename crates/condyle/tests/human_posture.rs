@@ -169,7 +169,7 @@ struct Held {
 
 impl Held {
     fn of(model: &Model, tracking: &Tracking) -> Result<Self, Box<dyn Error>> {
-        let frames = &tracking.motion.frames;
+        let frames = &tracking.motion().frames;
         let regions = ["lumbar", "thoracic", "cervical", "head"];
         let spine: Vec<CoordinateId> = model
             .coordinate_ids()

@@ -85,7 +85,7 @@ fn frames_as_they_come_are_those_of_the_recording_and_allocate_nothing() {
     let mut coordinates = vec![0.0; model.stored_len()];
     let mut live = Live::new(model.clone(), &recording.labels, &request).unwrap();
     assert_eq!(live.markers(), whole.markers);
-    for (seen, answer) in frames.iter().zip(&whole.answers) {
+    for (seen, answer) in frames.iter().zip(whole.answers.iter()) {
         let found = live.next(seen, &mut coordinates).unwrap();
         assert_eq!(&found.coordinates, &coordinates);
         for (a, b) in coordinates.iter().zip(&answer.coordinates) {

@@ -70,7 +70,6 @@ fn sampled_frames_reach_the_independent_minimum() {
             // knee wound through a whole turn, off the ends of its splines: no knee does that.)
             let least = frame["near_F"].as_f64().unwrap();
             let nearest = tracking
-                .motion
                 .times
                 .iter()
                 .enumerate()
@@ -80,7 +79,7 @@ fn sampled_frames_reach_the_independent_minimum() {
                 continue;
             }
             compared += 1;
-            let answer = &tracking.answers[nearest.0];
+            let answer = tracking.answers.at(nearest.0);
             assert!(
                 answer.objective <= (1.001 * least).max(least + 1e-9),
                 "{name} at {time} s: F {} where {least} is possible",
@@ -105,17 +104,17 @@ fn couplings_are_exact_and_threads_change_nothing() {
     let (model, one) = run(&data, pair, 1).unwrap();
     for threads in [2, 8] {
         let (_, other) = run(&data, pair, threads).unwrap();
-        assert_eq!(one.motion, other.motion, "{threads} threads");
+        assert_eq!(one.motion(), other.motion(), "{threads} threads");
     }
     let program = Program::compile(&model);
     let mut pose = Pose::new(&program);
     let mut coupled = 0;
-    for frame in &one.motion.frames {
+    for frame in &one.motion().frames {
         program.evaluate(frame, Mode::Open, &mut pose).unwrap();
         for id in model.coordinate_ids().filter(|&id| model.coordinate(id).follows.is_some()) {
             assert!((pose.coordinate(&model, id)[0] - model.value(frame, id)).abs() < 1e-12);
             coupled += 1;
         }
     }
-    assert_eq!(coupled, 2 * one.motion.frames.len(), "two patellae in every frame");
+    assert_eq!(coupled, 2 * one.motion().frames.len(), "two patellae in every frame");
 }

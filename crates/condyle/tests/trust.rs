@@ -78,7 +78,7 @@ fn an_angle_beyond_a_circle_is_said_and_no_check_finds_fault_with_it() {
     assert!(said.starts_with("turn (0 to 286.5 deg; range -180 to 180 deg"), "{said}");
     let format = Format::of_ending("mot").unwrap();
     let bytes =
-        encode::motion(format, &model, &tracking.motion, "walk", None, &remarks).unwrap().value;
+        encode::motion(format, &model, &tracking.motion(), "walk", None, &remarks).unwrap().value;
     let read = sto::from_bytes(&bytes).unwrap();
     assert!(read.warnings.is_empty(), "{:?}", read.warnings);
     assert_eq!(read.value.header_value("beyond_range"), Some(said));
@@ -86,7 +86,7 @@ fn an_angle_beyond_a_circle_is_said_and_no_check_finds_fault_with_it() {
     assert!(checked.holds(), "{:?}", checked.findings);
     // A CSV is read by programs that know no comments.
     let csv = Format::of_ending("csv").unwrap();
-    let bytes = encode::motion(csv, &model, &tracking.motion, "walk", None, &remarks).unwrap();
+    let bytes = encode::motion(csv, &model, &tracking.motion(), "walk", None, &remarks).unwrap();
     assert!(bytes.value.starts_with(b"time,turn,bend\n"));
 }
 

@@ -1,17 +1,22 @@
 //! `condyle convert`: a file in another format.
 
+mod includes;
+
 use super::{Limits, Outcome};
 use crate::failure::{Failure, warn_about, warned};
 use crate::motion_format as format;
 use crate::output;
+use crate::screen::say;
 use clap::{Args, ValueEnum};
 use condyle::formats::document::{self, Document};
+use condyle::formats::poses::Poses;
 use condyle::formats::{Content, ContentKind, Format, Id, trc};
-use condyle::open::Cause;
+use condyle::open::{Cause, OpenError};
 use condyle::{
-    AngleUnit, Interpolation, Mode, Model, Motion, Program, Table, encode, legal, open, shipped,
+    AngleUnit, Error, Interpolation, Mode, Model, Motion, Program, Table, encode, legal, open,
+    shipped,
 };
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(crate) struct Convert {
@@ -62,6 +67,9 @@ const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .cs
 impl Convert {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
         let target = self.target()?;
+        let inputs: Vec<&Path> =
+            [&self.input].into_iter().chain(&self.model).map(PathBuf::as_path).collect();
+        output::check_distinct(&inputs, &[&self.output])?;
         let read = match open::content(&self.input, None) {
             Err(error) if matches!(error.cause, Cause::Format { .. }) => {
                 return Err(self.unknown(target, ""));
@@ -74,9 +82,11 @@ impl Convert {
             return Err(Failure::new(format!("{what}: --rate is for poses (.json) with times")));
         }
         let bytes = match content {
-            Content::Poses(_) if target.id != Id::Document => self.motion_as(None, target)?,
+            Content::Poses(poses) if target.id != Id::Document => {
+                self.motion_as(Moving::Poses(poses), target)?
+            }
             Content::Table(table) if target.id != Id::Document => {
-                self.motion_as(Some(table), target)?
+                self.motion_as(Moving::Table(table), target)?
             }
             Content::Document(document) if target.id == Id::Document => {
                 self.document(document)?.into_bytes()
@@ -141,7 +151,7 @@ impl Convert {
     fn document(&self, document: Document) -> Result<String, Failure> {
         match shipped::asked_for(&self.input) {
             Some(name) => Ok(shipped::standalone(name)?),
-            None => Ok(moved(&document.text, &self.input, &self.output)),
+            None => Ok(includes::moved(&document.text, &self.input, &self.output)),
         }
     }
 
@@ -149,13 +159,15 @@ impl Convert {
         Ok(warned(&self.output, encode::scene(model, motion, self.mode(), None)?))
     }
 
-    /// A motion, or poses where there is no table.
-    fn motion_as(&self, table: Option<Table>, target: &Format) -> Result<Vec<u8>, Failure> {
-        let poses = table.is_none();
+    fn motion_as(&self, moving: Moving, target: &Format) -> Result<Vec<u8>, Failure> {
         let Some(model_path) = &self.model else {
             let what = format!("{}: without --model", self.input.display());
-            let Some(table) = table.filter(|_| target.writes.contains(&ContentKind::Motion)) else {
-                let from = if poses { "poses" } else { "a motion" };
+            let from = match moving {
+                Moving::Poses(_) => "poses",
+                Moving::Table(_) => "a motion",
+            };
+            let writes = target.writes.contains(&ContentKind::Motion);
+            let (Moving::Table(table), true) = (moving, writes) else {
                 let to = target.name;
                 return Err(Failure::new(format!(
                     "{what} {from} cannot be converted to .{to} ({KNOWN})"
@@ -167,9 +179,9 @@ impl Convert {
             return rewritten(&self.input, table, target);
         };
         let model = warned(model_path, open::model(model_path)?);
-        let mut motion = match table {
-            None => self.poses(&model)?,
-            Some(table) => {
+        let mut motion = match moving {
+            Moving::Poses(poses) => self.poses(&poses, &model)?,
+            Moving::Table(table) => {
                 let (motion, warnings) = Motion::from_table(&model, &table);
                 warn_about(&self.input, &warnings);
                 motion
@@ -179,16 +191,16 @@ impl Convert {
             let legal::Kept { solved, lost } = legal::keep(&model, &mut motion);
             let all = motion.frames.len();
             if solved > 0 {
-                eprintln!(
+                say(&format!(
                     "note: {solved} of {all} frames broke limits between segments: theirs is the nearest \
                      legal pose"
-                );
+                ));
             }
             if lost > 0 {
-                eprintln!(
+                say(&format!(
                     "warning: {lost} of {all} frames are not reproduced by their coordinates alone: a limit \
                      acts on what several of them make together; pose the file with `--limits on`"
-                );
+                ));
             }
         }
         match target.id {
@@ -200,11 +212,15 @@ impl Convert {
     }
 
     /// Poses as frames, or as keys between which a motion goes.
-    fn poses(&self, model: &Model) -> Result<Motion, Failure> {
-        let Some(rate) = self.rate else {
-            return Ok(warned(&self.input, open::poses(&self.input, model)?).motion);
+    fn poses(&self, poses: &Poses, model: &Model) -> Result<Motion, Failure> {
+        let fail = |error: Error| {
+            let cause = Cause::Content { error, text: None };
+            Failure::from(OpenError { path: self.input.clone(), cause })
         };
-        let keys = warned(&self.input, open::keys(&self.input, model)?);
+        let Some(rate) = self.rate else {
+            return Ok(poses.resolve(model).map_err(fail)?.motion);
+        };
+        let keys = poses.keys(model).map_err(fail)?;
         let between = match self.between {
             Curve::Linear => Interpolation::Linear,
             Curve::Spline => Interpolation::Spline,
@@ -234,49 +250,10 @@ impl Convert {
     }
 }
 
-/// A document for another folder: what it includes is found from there.
-fn moved(text: &str, from: &Path, to: &Path) -> String {
-    let folder = |path: &Path| {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        std::path::absolute(folder.unwrap_or(Path::new("."))).unwrap_or_default()
-    };
-    // Standard output is read from where the command runs.
-    let (from, to) = (folder(from), folder(if to == Path::new("-") { Path::new("x") } else { to }));
-    if from == to {
-        return text.to_owned();
-    }
-    let mut text = text.to_owned();
-    let mut includes = document::includes(&text);
-    includes.sort_by_key(|(place, _)| std::cmp::Reverse(place.start));
-    for (place, path) in includes {
-        let file = from.join(&path);
-        // A shipped model is included by its name, an absolute path from anywhere.
-        if Path::new(&path).is_absolute() || !file.exists() {
-            continue;
-        }
-        text.replace_range(place, &format!("{:?}", relative(&to, &file)));
-    }
-    text
-}
-
-/// A path to a file from a folder, both absolute, with forward slashes.
-fn relative(folder: &Path, file: &Path) -> String {
-    let plain = |path: &Path| -> Vec<String> {
-        let mut parts: Vec<String> = vec![];
-        for part in path.components() {
-            match part {
-                Component::ParentDir => _ = parts.pop(),
-                Component::CurDir => {}
-                part => parts.push(part.as_os_str().to_string_lossy().into_owned()),
-            }
-        }
-        parts
-    };
-    let (folder, file) = (plain(folder), plain(file));
-    let shared = folder.iter().zip(&file).take_while(|(a, b)| a == b).count();
-    let up = std::iter::repeat_n("..", folder.len() - shared);
-    let down = file[shared..].iter().map(String::as_str);
-    up.chain(down).collect::<Vec<_>>().join("/")
+/// What a motion is made from.
+enum Moving {
+    Poses(Poses),
+    Table(Table),
 }
 
 /// A table in another format, number by number, with the unit of its angles stated.
@@ -284,11 +261,11 @@ fn rewritten(path: &Path, mut table: Table, target: &Format) -> Result<Vec<u8>, 
     if table.angle_unit == AngleUnit::Unstated {
         // A CSV file without a stated unit is in radians: this program writes it like that.
         if open::ending(path) != "csv" {
-            eprintln!(
+            say(&format!(
                 "warning: {}: the header does not state whether angles are in degrees; taken as \
                  radians (add the line inDegrees=yes if they are not)",
                 path.display()
-            );
+            ));
         }
         table.angle_unit = AngleUnit::Radians;
     }

@@ -69,7 +69,7 @@ impl Demo {
         let (plain, rate_plain) = tracked(&model, &recording, false)?;
         let (robust, rate_robust) = tracked(&model, &recording, true)?;
         let [off_plain, off_robust] =
-            [&plain, &robust].map(|t| Closeness::of(&model, &t.motion, &truth));
+            [&plain, &robust].map(|t| Closeness::of(&model, &t.motion(), &truth));
         if self.json {
             output::print_json(&json!({
                 "frames": FRAMES,
@@ -91,10 +91,11 @@ impl Demo {
             let text = trc::write(&recording, "recording.trc").map_err(fail)?;
             output::write(&folder.join("recording.trc"), text.as_bytes())?;
             let labels: Vec<usize> = (0..recording.labels.len()).collect();
+            let recovered = robust.motion();
             let motions = [
                 ("truth.mot", &truth),
-                ("recovered.mot", &robust.motion),
-                ("recovered.glb", &robust.motion),
+                ("recovered.mot", &recovered),
+                ("recovered.glb", &recovered),
             ];
             for (name, motion) in motions {
                 let path = folder.join(name);

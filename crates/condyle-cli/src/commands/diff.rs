@@ -3,6 +3,7 @@
 use super::Outcome;
 use crate::failure::{Failure, warned};
 use crate::output::{self, columns, wrapped};
+use crate::screen::say;
 use clap::Args;
 use condyle::motion::difference::{Comparison, Difference, Incomparable, compare};
 use condyle::{AngleUnit, Table, open};
@@ -35,14 +36,14 @@ impl Diff {
         if model.is_none()
             && (a.angle_unit == AngleUnit::Degrees) != (b.angle_unit == AngleUnit::Degrees)
         {
-            eprintln!(
+            say(&format!(
                 "warning: {} has {}, {} has {}; without --model rotations cannot be distinguished \
                  from lengths, so the numbers are compared without conversion",
                 self.a.display(),
                 unit_name(&a),
                 self.b.display(),
                 unit_name(&b),
-            );
+            ));
         }
         let compared = compare(model.as_ref(), &a, &b).map_err(|why| self.failure(&why, &a, &b))?;
         match self.json {

@@ -2,12 +2,14 @@
 
 use super::{Limits, Outcome};
 use crate::failure::{Failure, warned};
-use crate::output;
+use crate::output::{self, Output};
+use crate::screen::say;
 use clap::Args;
 use condyle::formats::poses::Resolved;
-use condyle::{Mode, Model, Motion, Pose, Program, legal, open};
-use serde_json::{Map, Value, json};
-use std::path::PathBuf;
+use condyle::{Mode, Model, Motion, Pose, Program, SegmentId, legal, open};
+use serde_json::json;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(crate) struct Fk {
@@ -36,55 +38,35 @@ const COUPLING_TOLERANCE: f64 = 1e-9;
 
 impl Fk {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
+        let inputs = [Some(&self.model), self.pose.as_ref(), self.motion.as_ref()];
+        let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
+        output::check_distinct(&inputs, &[&self.output])?;
         let model = warned(&self.model, open::model(&self.model)?);
-        let requests = self.requests(&model)?;
-        let program = Program::compile(&model);
-        let mut pose = Pose::new(&program);
-        let mut solved = 0;
-        let mut ignored = vec![0usize; model.coordinates().len()];
-        let mut frames = Vec::with_capacity(requests.motion.frames.len());
-        for (index, (time, stored)) in
-            requests.motion.times.iter().zip(&requests.motion.frames).enumerate()
-        {
-            let evaluated = match self.limits {
-                Limits::On => legal::evaluate(&model, &program, stored, &mut pose),
-                Limits::Off => program.evaluate(stored, Mode::Open, &mut pose).map(|()| false),
-            };
-            solved += usize::from(evaluated.map_err(|error| Failure::new(error.to_string()))?);
-            for id in model.coordinate_ids() {
-                let named = requests.named.get(index).is_none_or(|n| n[id.index()]);
-                if named && model.coordinate(id).follows.is_some() {
-                    let asked = model.value(stored, id);
-                    let got = pose.coordinate(&model, id)[0];
-                    if (asked - got).abs() > COUPLING_TOLERANCE {
-                        ignored[id.index()] += 1;
+        let long = match &self.motion {
+            // Never the whole of it in memory.
+            Some(path) => open::motion_parts(path, &model)?.map(|parts| warned(path, parts)),
+            None => None,
+        };
+        let frames = match long {
+            Some(parts) => {
+                let mut frames = Frames::create(&model, &self)?;
+                for part in parts {
+                    let motion = part?;
+                    frames.add(&Resolved { motion, named: vec![] })?;
+                    if frames.output.get_ref().is_closed() {
+                        break;
                     }
                 }
+                frames
             }
-            let segments: Map<String, Value> = model
-                .segment_ids()
-                .map(|id| (model.segment(id).name.clone(), json!(pose.segment(id).to_rows())))
-                .collect();
-            frames.push(json!({ "time": time, "segments": segments }));
-        }
-        for (id, count) in model.coordinate_ids().zip(ignored) {
-            if count > 0 {
-                eprintln!(
-                    "warning: `{}` follows other coordinates; the value given for it was ignored in \
-                     {count} of {} frames",
-                    model.coordinate_key(id),
-                    frames.len()
-                );
+            None => {
+                let requests = self.requests(&model)?;
+                let mut frames = Frames::create(&model, &self)?;
+                frames.add(&requests)?;
+                frames
             }
-        }
-        if solved > 0 {
-            eprintln!(
-                "note: {solved} of {} frames broke limits between segments: theirs is the nearest legal \
-                 pose",
-                frames.len()
-            );
-        }
-        output::write(&self.output, format!("{}\n", json!({ "frames": frames })).as_bytes())?;
+        };
+        frames.end()?;
         Ok(Outcome::Done)
     }
 
@@ -98,5 +80,131 @@ impl Fk {
             return Ok(Resolved { motion, named: vec![vec![false; model.coordinates().len()]] });
         };
         Ok(warned(path, open::poses(path, model)?))
+    }
+}
+
+/// The answer, written frame by frame.
+struct Frames<'a> {
+    model: &'a Model,
+    path: &'a Path,
+    limits: Limits,
+    program: Program,
+    pose: Pose,
+    /// The segments and their names in JSON, in the order of their names.
+    segments: Vec<(SegmentId, String)>,
+    output: BufWriter<Output>,
+    count: usize,
+    /// How many frames were moved to the nearest legal pose.
+    solved: usize,
+    /// For each coordinate in how many frames its value was ignored.
+    ignored: Vec<usize>,
+}
+
+impl<'a> Frames<'a> {
+    fn create(model: &'a Model, asked: &'a Fk) -> Result<Self, Failure> {
+        let program = Program::compile(model);
+        let pose = Pose::new(&program);
+        let mut segments: Vec<(SegmentId, String)> =
+            model.segment_ids().map(|id| (id, model.segment(id).name.clone())).collect();
+        segments.sort_by(|a, b| a.1.cmp(&b.1));
+        segments.iter_mut().for_each(|(_, name)| *name = json!(name).to_string());
+        let mut frames = Self {
+            model,
+            path: &asked.output,
+            limits: asked.limits,
+            program,
+            pose,
+            segments,
+            output: BufWriter::with_capacity(1 << 16, Output::create(&asked.output)?),
+            count: 0,
+            solved: 0,
+            ignored: vec![0; model.coordinates().len()],
+        };
+        frames.write(|output| write!(output, "{{\"frames\":["))?;
+        Ok(frames)
+    }
+
+    fn write(
+        &mut self,
+        write: impl FnOnce(&mut BufWriter<Output>) -> io::Result<()>,
+    ) -> Result<(), Failure> {
+        write(&mut self.output).map_err(|error| output::not_written(self.path, error))
+    }
+
+    fn add(&mut self, requests: &Resolved) -> Result<(), Failure> {
+        let motion = &requests.motion;
+        for (index, (&time, stored)) in motion.times.iter().zip(&motion.frames).enumerate() {
+            let evaluated = match self.limits {
+                Limits::On => legal::evaluate(self.model, &self.program, stored, &mut self.pose),
+                Limits::Off => {
+                    self.program.evaluate(stored, Mode::Open, &mut self.pose).map(|()| false)
+                }
+            };
+            self.solved += usize::from(evaluated.map_err(|e| Failure::new(e.to_string()))?);
+            self.compare(stored, requests.named.get(index));
+            self.frame(time)?;
+        }
+        Ok(())
+    }
+
+    /// Counts the values that differ from what a coordinate that follows others has.
+    fn compare(&mut self, stored: &[f64], named: Option<&Vec<bool>>) {
+        for id in self.model.coordinate_ids() {
+            if named.is_none_or(|n| n[id.index()]) && self.model.coordinate(id).follows.is_some() {
+                let asked = self.model.value(stored, id);
+                let got = self.pose.coordinate(self.model, id)[0];
+                if (asked - got).abs() > COUPLING_TOLERANCE {
+                    self.ignored[id.index()] += 1;
+                }
+            }
+        }
+    }
+
+    fn frame(&mut self, time: f64) -> Result<(), Failure> {
+        let Self { output, pose, segments, .. } = self;
+        let written = (|| {
+            output.write_all(if self.count > 0 {
+                b",{\"segments\":{"
+            } else {
+                b"{\"segments\":{"
+            })?;
+            for (index, (id, name)) in segments.iter().enumerate() {
+                output.write_all(if index > 0 { b"," } else { b"" })?;
+                output.write_all(name.as_bytes())?;
+                output.write_all(b":")?;
+                serde_json::to_writer(&mut *output, &pose.segment(*id).to_rows())?;
+            }
+            output.write_all(b"},\"time\":")?;
+            serde_json::to_writer(&mut *output, &time)?;
+            output.write_all(b"}")
+        })();
+        self.count += 1;
+        written.map_err(|error| output::not_written(self.path, error))
+    }
+
+    /// Says what was changed, and puts the answer in its place.
+    fn end(mut self) -> Result<(), Failure> {
+        let count = self.count;
+        for (id, &ignored) in self.model.coordinate_ids().zip(&self.ignored) {
+            if ignored > 0 {
+                say(&format!(
+                    "warning: `{}` follows other coordinates; the value given for it was ignored in \
+                     {ignored} of {count} frames",
+                    self.model.coordinate_key(id),
+                ));
+            }
+        }
+        if self.solved > 0 {
+            say(&format!(
+                "note: {} of {count} frames broke limits between segments: theirs is the nearest legal \
+                 pose",
+                self.solved
+            ));
+        }
+        self.write(|output| output.write_all(b"]}\n"))?;
+        match self.output.into_inner() {
+            Ok(output) => output.finish(),
+            Err(error) => Err(output::not_written(self.path, error.into_error())),
+        }
     }
 }

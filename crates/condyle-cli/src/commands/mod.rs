@@ -12,14 +12,26 @@ mod scale;
 mod track;
 
 use crate::failure::Failure;
+use clap::builder::PossibleValuesParser;
 use clap::{Parser, Subcommand, ValueEnum};
+use condyle::formats::{FORMATS, Format};
+use condyle::open;
 
 /// Anatomical joints: models, limits, and tracking of markers.
 #[derive(Debug, Parser)]
 #[command(name = "condyle", version, about, max_term_width = 100)]
 pub(crate) struct Arguments {
+    /// The format of an input without an ending: `-`, which is standard input, or a pipe.
+    #[arg(long, global = true, value_name = "FORMAT", value_parser = formats())]
+    from: Option<String>,
     #[command(subcommand)]
     command: Command,
+}
+
+/// The names of all formats that are read.
+fn formats() -> PossibleValuesParser {
+    let read = FORMATS.iter().filter(|format| !format.reads.is_empty());
+    PossibleValuesParser::new(read.map(|format| format.name).collect::<Vec<_>>())
 }
 
 #[derive(Debug, Subcommand)]
@@ -64,6 +76,9 @@ pub(crate) enum Outcome {
 
 /// Runs a command.
 pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
+    if let Some(format) = arguments.from.as_deref().and_then(Format::of_ending) {
+        open::nameless_is(format);
+    }
     match arguments.command {
         Command::Info(command) => command.run(),
         Command::Check(command) => command.run(),

@@ -39,6 +39,13 @@ impl Pose {
             let message = "--json and -o - both want standard output: give one of them";
             return Err(Failure::new(message));
         }
+        let inputs: Vec<&Path> = [&self.model, &self.goals]
+            .into_iter()
+            .chain(&self.rest)
+            .map(PathBuf::as_path)
+            .collect();
+        let outputs: Vec<&Path> = self.output.iter().map(PathBuf::as_path).collect();
+        output::check_distinct(&inputs, &outputs)?;
         let model = warned(&self.model, open::model(&self.model)?);
         let list = warned(&self.goals, open::goals(&self.goals)?);
         let rest = match &self.rest {

@@ -55,6 +55,7 @@ impl Scale {
                 "--json and -o - both want standard output: give one of them",
             ));
         }
+        output::check_distinct(&[&self.model, &self.trial], &[&self.output])?;
         let model = warned(&self.model, open::model(&self.model)?);
         let recording = warned(&self.trial, open::recording(&self.trial)?);
         let assumed = Assumptions { keep_markers: self.keep_markers, ..Assumptions::default() };

@@ -28,12 +28,19 @@ impl Folder {
 
     /// Runs the command in the folder.
     pub(crate) fn condyle(&self, arguments: &[&str]) -> Answer {
-        let output = Command::new(env!("CARGO_BIN_EXE_condyle"))
-            .args(arguments)
-            .current_dir(&self.0)
-            .stdin(Stdio::null())
-            .output()
-            .expect("the command starts");
+        self.run(self.command(env!("CARGO_BIN_EXE_condyle")).args(arguments))
+    }
+
+    /// A program that will run in the folder, with nothing on its standard input.
+    pub(crate) fn command(&self, program: &str) -> Command {
+        let mut command = Command::new(program);
+        command.current_dir(&self.0).stdin(Stdio::null());
+        command
+    }
+
+    /// Runs a program to its end.
+    pub(crate) fn run(&self, command: &mut Command) -> Answer {
+        let output = command.output().expect("the command starts");
         Answer {
             // None of a command that a signal ended.
             code: output.status.code().unwrap_or(-1),

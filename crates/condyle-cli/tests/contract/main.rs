@@ -3,16 +3,23 @@
 #[path = "../command/mod.rs"]
 mod command;
 
+mod batch;
 mod bench;
 mod convert;
 mod diff;
 mod document;
 mod fk;
 mod info;
+#[cfg(unix)]
+mod kill;
 mod leg;
+#[cfg(unix)]
+mod output;
 mod pose;
 mod scale;
 mod shipped;
+#[cfg(unix)]
+mod standard_input;
 mod track;
 
 use command::{Answer, Folder};

@@ -26,4 +26,4 @@ mod read;
 mod write;
 
 pub use read::{from_bytes, read};
-pub use write::write;
+pub use write::{head, rows, write};

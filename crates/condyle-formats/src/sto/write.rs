@@ -50,15 +50,21 @@ pub fn write(table: &Table) -> Result<String, Error> {
     if let Some(mismatch) = table.mismatch() {
         return Err(Error::new("sto/shape", mismatch));
     }
+    Ok(head(table, table.rows())? + &rows(table))
+}
+
+/// The lines before the rows, for a table that will have so many of them.
+///
+/// # Errors
+///
+/// `sto/no-names` if a column has no name.
+pub fn head(table: &Table, rows: usize) -> Result<String, Error> {
     if let Some(blank) = table.columns.iter().position(|column| plain(column).is_empty()) {
         return Err(Error::new("sto/no-names", format!("column {} has no name", blank + 2)));
     }
     let name = title(&table.name);
-    let mut text = format!(
-        "{name}\nversion=1\nnRows={}\nnColumns={}\n",
-        table.rows(),
-        table.columns.len() + 1
-    );
+    let mut text =
+        format!("{name}\nversion=1\nnRows={rows}\nnColumns={}\n", table.columns.len() + 1);
     match table.angle_unit {
         AngleUnit::Degrees => text.push_str("inDegrees=yes\n"),
         AngleUnit::Radians => text.push_str("inDegrees=no\n"),
@@ -76,6 +82,12 @@ pub fn write(table: &Table) -> Result<String, Error> {
         text.push_str(&plain(column));
     }
     text.push('\n');
+    Ok(text)
+}
+
+/// The rows of a table, which may be some of many.
+pub fn rows(table: &Table) -> String {
+    let mut text = String::new();
     for (row, time) in table.times.iter().enumerate() {
         text.push_str(&decimal(*time));
         for value in table.row(row) {
@@ -84,7 +96,7 @@ pub fn write(table: &Table) -> Result<String, Error> {
         }
         text.push('\n');
     }
-    Ok(text)
+    text
 }
 
 /// The title as a line that no reader mistakes for a key; OpenSim needs one.

@@ -234,7 +234,7 @@ fn off(
     frames: impl ExactSizeIterator<Item = usize>,
 ) -> f64 {
     let n = frames.len().max(1) as f64;
-    let value = |t: &Tracking, frame: usize| model.value(&t.motion.frames[frame], id);
+    let value = |t: &Tracking, frame: usize| model.value(t.answers.coordinates(frame), id);
     let turns = model.coordinate(id).kind == CoordinateKind::Rotation;
     let square = |frame| {
         let off: f64 = value(a, frame) - value(b, frame);
@@ -253,7 +253,7 @@ fn generate(trial: &Trial) -> Result<Trial, Box<dyn Error>> {
     let markers = trial.model.markers().iter();
     let points: Vec<_> = markers.map(|m| Some(m.point + dice.vector() * 0.010)).collect();
     let placed = trial.model.with_markers_at(&points);
-    let mut recording = plain.motion.virtual_markers(&placed, Mode::Open)?;
+    let mut recording = plain.motion().virtual_markers(&placed, Mode::Open)?;
     recording.rate = trial.recording.rate;
     for position in recording.positions.iter_mut().filter_map(Observed::position_mut) {
         let noise = dice.vector() * 0.002;

@@ -5,10 +5,11 @@ use super::{Faulty, Request, Swap, Tracking, UnusedMarkers, Variant, Verdict, po
 use crate::matching::{Match, match_markers};
 use condyle_diagnostics::{Diagnostic, Error};
 use condyle_model::Model;
-use condyle_motion::{Motion, Recording};
+use condyle_motion::Recording;
 use condyle_track::robust::{self, Corrected, Repairs};
 use condyle_track::{
-    FrameAnswer, MarkerTarget, Recorded, Rules, Scratch, Targets, Tracker, Trust, sequence,
+    Answers, FrameAnswer, MarkerTarget, Recorded, Rules, Run, Scratch, Targets, Tracker, Trust,
+    sequence,
 };
 use std::collections::HashMap;
 use std::ops::Range;
@@ -156,7 +157,10 @@ impl<'a> Job<'a> {
             self.pass(&Corrected { recorded: &recorded, repairs: &repairs }, &mut progress);
         let (mut swaps, mut faulty) = (vec![], vec![]);
         let repairs = if self.robust {
-            self.repaired(&recorded, repairs, &mut answers, &mut progress)
+            let mut unpacked: Vec<FrameAnswer> = answers.iter().collect();
+            let repairs = self.repaired(&recorded, repairs, &mut unpacked, &mut progress);
+            answers = Answers::from(&unpacked[..]);
+            repairs
         } else {
             repairs
         };
@@ -189,10 +193,7 @@ impl<'a> Job<'a> {
             first,
         };
         let jumps = judged.jumps();
-        let motion = Motion {
-            times: self.recording.times[self.frames.clone()].to_vec(),
-            frames: answers.iter().map(|a| a.coordinates.clone()).collect(),
-        };
+        let times = self.recording.times[self.frames.clone()].to_vec();
         let (markers, labels) = (self.markers.clone(), self.labels.clone());
         let (frames, mut warnings) = (self.frames.clone(), self.warnings.clone());
         warnings.extend(self.robust.then(|| few_frames(frames.len())).flatten());
@@ -205,7 +206,7 @@ impl<'a> Job<'a> {
         };
         let verdict = Verdict::PLAUSIBLE;
         let mut tracking = Tracking {
-            motion,
+            times,
             answers,
             markers,
             labels,
@@ -237,22 +238,23 @@ impl<'a> Job<'a> {
         let tracker = &*self.tracker;
         let mut scratch = Scratch::new(tracker);
         if robust::exchanged_throughout(tracker, &mut scratch, recorded, &mut repairs, answers) {
-            *answers = self.pass(&Corrected { recorded, repairs: &repairs }, progress);
+            let again = self.pass(&Corrected { recorded, repairs: &repairs }, progress);
+            *answers = again.iter().collect();
         }
         robust::find(tracker, &mut scratch, recorded, &mut repairs, answers);
         repairs
     }
 
-    /// How far each coordinate of each answer can be trusted.
-    fn trust(&self, recorded: &dyn Recorded, answers: &[FrameAnswer]) -> Vec<Vec<Trust>> {
+    /// How far each coordinate of each answer can be trusted, frame by frame.
+    fn trust(&self, recorded: &dyn Recorded, answers: &Answers) -> Vec<Trust> {
         let chunks = sequence::cut(answers.len());
         let tracker = &*self.tracker;
-        let judge = |index: usize, scratch: &mut Scratch| -> Vec<Vec<Trust>> {
+        let judge = |index: usize, scratch: &mut Scratch| -> Vec<Trust> {
             let mut seen = vec![];
             let frames = chunks[index].frames.clone();
-            let trust = frames.map(|frame| {
+            let trust = frames.flat_map(|frame| {
                 recorded.positions(frame, &mut seen);
-                tracker.trust(scratch, &seen, frame, &answers[frame])
+                tracker.trust(scratch, &seen, frame, &answers.at(frame))
             });
             trust.collect()
         };
@@ -263,7 +265,7 @@ impl<'a> Job<'a> {
         &self,
         recorded: &dyn Recorded,
         progress: &mut &mut (dyn FnMut(usize, usize) + Send),
-    ) -> Vec<FrameAnswer> {
+    ) -> Answers {
         let total = self.frames.len();
         let chunks = sequence::cut(total);
         let tracker = &*self.tracker;
@@ -279,10 +281,10 @@ impl<'a> Job<'a> {
                 let done = told.0;
                 (told.1)(done, total);
             }
-            answers
+            Run::of(&answers)
         };
-        let answers = in_parallel(self.threads, chunks.len(), || Scratch::new(tracker), solve);
-        sequence::stitch(tracker, &mut scratch, recorded, &chunks, answers)
+        let runs = in_parallel(self.threads, chunks.len(), || Scratch::new(tracker), solve);
+        sequence::stitch_runs(tracker, &mut scratch, recorded, &chunks, runs)
     }
 }
 

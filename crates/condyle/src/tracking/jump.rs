@@ -1,9 +1,9 @@
 //! Where a segment turns more in one frame than a body does, and what is known of why.
 
-use super::{Faulty, Swap};
+use super::{Faulty, Swap, trust_in};
 use condyle_math::{Mat3, Quat, Vec3};
 use condyle_model::{CoordinateId, CoordinateKind, Mode, Pose, SegmentId};
-use condyle_track::{FrameAnswer, FrameStatus, Recorded, Tracker, Trust};
+use condyle_track::{Answers, FrameStatus, Recorded, Tracker, Trust};
 use std::fmt;
 
 /// A segment that turns by more than this from one frame to the next has jumped: 60°.
@@ -82,8 +82,9 @@ impl fmt::Display for JumpCause {
 pub(super) struct Judged<'a> {
     pub tracker: &'a Tracker,
     pub recorded: &'a dyn Recorded,
-    pub answers: &'a [FrameAnswer],
-    pub trust: &'a [Vec<Trust>],
+    pub answers: &'a Answers,
+    /// Frame by frame.
+    pub trust: &'a [Trust],
     /// Labels of the marker targets.
     pub labels: Vec<&'a str>,
     pub swaps: &'a [Swap],
@@ -104,8 +105,9 @@ impl Judged<'_> {
         let mut pose = Pose::new(program);
         let mut before: Vec<Mat3> = vec![];
         let mut jumps = vec![];
-        for (frame, answer) in self.answers.iter().enumerate() {
-            if program.evaluate(&answer.coordinates, Mode::Open, &mut pose).is_err() {
+        for frame in 0..self.answers.len() {
+            let stored = self.answers.coordinates(frame);
+            if program.evaluate(stored, Mode::Open, &mut pose).is_err() {
                 continue;
             }
             let now: Vec<Mat3> = segments.iter().map(|&s| pose.segment(s).linear).collect();
@@ -143,7 +145,7 @@ impl Judged<'_> {
         };
         let change = |id: CoordinateId| {
             let place = model.stored_range(id);
-            let [a, b] = [frame - 1, frame].map(|f| &self.answers[f].coordinates[place.clone()]);
+            let [a, b] = [frame - 1, frame].map(|f| &self.answers.coordinates(f)[place.clone()]);
             match (model.coordinate(id).kind, a, b) {
                 (CoordinateKind::Orientation, &[a, b, c, d], &[e, f, g, h]) => {
                     Quat::from([a, b, c, d]).angle_to(Quat::from([e, f, g, h]))
@@ -161,7 +163,7 @@ impl Judged<'_> {
         changes: &[(CoordinateId, f64)],
     ) -> JumpCause {
         let both = [frame - 1, frame];
-        let unsolved = both.map(|f| self.answers[f].status).into_iter().find(|s| !s.is_solved());
+        let unsolved = both.map(|f| self.answers.at(f).status).into_iter().find(|s| !s.is_solved());
         if let Some(status) = unsolved {
             return JumpCause::NotSolved(status);
         }
@@ -213,7 +215,8 @@ impl Judged<'_> {
             });
             let such = much.filter(|(id, _)| {
                 both.iter().any(|&f| {
-                    self.trust.get(f).is_some_and(|trust| kinds.contains(&trust[id.index()]))
+                    let trust = trust_in(self.trust, self.answers.len(), f);
+                    trust.get(id.index()).is_some_and(|trust| kinds.contains(trust))
                 })
             });
             such.map(|(id, _)| model.coordinate_key(*id)).collect()
@@ -242,7 +245,7 @@ mod tests {
     use super::*;
     use condyle_model::{Model, ModelBuilder};
     use condyle_track::robust::Fault;
-    use condyle_track::{MarkerTarget, Rules, Targets};
+    use condyle_track::{FrameAnswer, MarkerTarget, Rules, Targets};
 
     /// A hinge with three markers.
     fn hinge() -> Model {
@@ -281,8 +284,8 @@ mod tests {
         let judged = Judged {
             tracker: &tracker,
             recorded: &recorded,
-            answers: &answers,
-            trust: &[vec![Trust::Determined], vec![Trust::Determined], vec![trust]],
+            answers: &Answers::from(&answers[..]),
+            trust: &[Trust::Determined, Trust::Determined, trust],
             labels: vec!["A", "B", "C"],
             swaps,
             faulty,

@@ -22,8 +22,8 @@ mod verdict;
 
 pub use condyle_track::robust::Fault;
 pub use condyle_track::{
-    CoordinateTarget, FrameAnswer, FrameStatus, MarkerTarget, OrientationTarget, PostureTarget,
-    Rules, Scratch, Stream, Targets, Tracker, Trust, Wanted,
+    Answers, CoordinateTarget, FrameAnswer, FrameStatus, MarkerTarget, OrientationTarget,
+    PostureTarget, Rules, Scratch, Stream, Targets, Tracker, Trust, Wanted,
 };
 pub use job::Job;
 pub use jump::{Jump, JumpCause};
@@ -46,10 +46,10 @@ use std::ops::Range;
 /// A tracked recording.
 #[derive(Clone, Debug)]
 pub struct Tracking {
-    /// The coordinates of every frame.
-    pub motion: Motion,
+    /// Seconds, one for each frame.
+    pub times: Vec<f64>,
     /// What came out of every frame, in order.
-    pub answers: Vec<FrameAnswer>,
+    pub answers: Answers,
     /// Names of the markers used, in the order of each answer's errors.
     pub markers: Vec<String>,
     /// For each marker used, its position among the recording's labels.
@@ -65,14 +65,41 @@ pub struct Tracking {
     pub faulty: Vec<Faulty>,
     /// The markers and labels that were not used.
     pub unused: UnusedMarkers,
-    /// For each frame how far each coordinate can be trusted, in the order of the model's coordinates.
-    pub trust: Vec<Vec<Trust>>,
+    /// How far each coordinate can be trusted, frame by frame in the order of the model's coordinates.
+    pub trust: Vec<Trust>,
     /// Coordinates that move no marker that was used.
     pub unmoved: Vec<CoordinateId>,
     /// Where a segment with markers turns by more than 60° from one frame to the next, and why.
     pub jumps: Vec<Jump>,
     /// Whether the fit can be believed.
     pub verdict: Verdict,
+}
+
+impl Tracking {
+    /// The coordinates of every frame.
+    pub fn motion(&self) -> Motion {
+        self.motion_of(0..self.answers.len())
+    }
+
+    /// The coordinates of some of the frames, counted from the first that was tracked.
+    pub fn motion_of(&self, frames: Range<usize>) -> Motion {
+        let frames = frames.start..frames.end.min(self.answers.len());
+        Motion {
+            times: self.times.get(frames.clone()).unwrap_or_default().to_vec(),
+            frames: frames.map(|frame| self.answers.coordinates(frame).to_vec()).collect(),
+        }
+    }
+
+    /// How far each coordinate can be trusted in a frame; empty if there is no such frame.
+    pub fn trust_in(&self, frame: usize) -> &[Trust] {
+        trust_in(&self.trust, self.answers.len(), frame)
+    }
+}
+
+/// The part of one frame.
+fn trust_in(trust: &[Trust], frames: usize, frame: usize) -> &[Trust] {
+    let width = trust.len() / frames.max(1);
+    trust.get(frame * width..(frame + 1) * width).unwrap_or_default()
 }
 
 /// Labels that are exchanged over some frames.

@@ -28,8 +28,8 @@ impl Tracking {
             let (lower, upper) = model.coordinate(id).range.bounds();
             let mut values = [f64::INFINITY, f64::NEG_INFINITY];
             let mut frames = 0;
-            for frame in &self.motion.frames {
-                let value = model.value(frame, id);
+            for frame in 0..self.answers.len() {
+                let value = model.value(self.answers.coordinates(frame), id);
                 values = [values[0].min(value), values[1].max(value)];
                 frames += usize::from(value < lower - 1e-9 || value > upper + 1e-9);
             }

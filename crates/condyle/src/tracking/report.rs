@@ -111,15 +111,15 @@ impl Tracking {
     pub fn summary(&self) -> Summary {
         let n = self.answers.len();
         let mean = |f: &dyn Fn(&FrameAnswer) -> f64| {
-            self.answers.iter().map(f).sum::<f64>() / n.max(1) as f64
+            self.answers.iter().map(|a| f(&a)).sum::<f64>() / n.max(1) as f64
         };
-        let frames = self.frames.clone().zip(&self.motion.times).zip(&self.answers);
+        let frames = self.frames.clone().zip(&self.times).zip(self.answers.iter());
         let failed = frames.filter(|(_, answer)| !answer.status.is_solved());
         Summary {
             frames: n,
             markers_used: self.markers.len(),
             rms: mean(&FrameAnswer::rms),
-            max: self.answers.iter().map(FrameAnswer::max).fold(0.0, f64::max),
+            max: self.answers.iter().map(|a| a.max()).fold(0.0, f64::max),
             objective: mean(&|a| a.objective),
             objective_markers: mean(&|a| a.weighted_squares),
             objective_posture: mean(&|a| a.posture),
@@ -132,7 +132,7 @@ impl Tracking {
     /// All numbers about the tracking with its model.
     pub fn report(&self, model: &Model) -> Report {
         let mostly = |id: &CoordinateId| {
-            let pushed = self.trust.iter().filter(|of| of[id.index()] == Trust::AtLimit);
+            let pushed = self.trust_of(*id).filter(|trust| *trust == Trust::AtLimit);
             2 * pushed.count() > self.answers.len()
         };
         let mostly = model.coordinate_ids().filter(mostly);
@@ -154,6 +154,12 @@ impl Tracking {
         }
     }
 
+    /// How far a coordinate can be trusted, frame by frame.
+    fn trust_of(&self, id: CoordinateId) -> impl Iterator<Item = Trust> + '_ {
+        let frames = 0..self.answers.len();
+        frames.filter_map(move |frame| self.trust_in(frame).get(id.index()).copied())
+    }
+
     /// In how many of the frames each coordinate that is not locked follows from the markers.
     pub(super) fn determination(&self, model: &Model) -> Vec<Determination> {
         let solved = model.coordinate_ids().filter(|&id| !model.coordinate(id).locked);
@@ -161,11 +167,11 @@ impl Tracking {
     }
 
     fn determination_of(&self, model: &Model, id: CoordinateId) -> Determination {
-        let trust = || self.trust.iter().map(|of| of[id.index()]);
-        let n = self.trust.len().max(1) as f64;
+        let trust = || self.trust_of(id);
+        let n = self.answers.len().max(1) as f64;
         let share = |kinds: &[Trust]| trust().filter(|t| kinds.contains(t)).count() as f64 / n;
         let (mut spans, mut open): (Vec<[f64; 2]>, bool) = (vec![], false);
-        for (trust, &time) in trust().zip(&self.motion.times) {
+        for (trust, &time) in trust().zip(&self.times) {
             let unsure = trust != Trust::Determined;
             match spans.last_mut() {
                 Some(span) if unsure && open => span[1] = time,
@@ -189,7 +195,8 @@ impl Tracking {
     pub fn at_limits(&self, model: &Model) -> Vec<(CoordinateId, usize)> {
         let touches = |id: CoordinateId| {
             let (lower, upper) = model.coordinate(id).range.bounds();
-            let values = self.motion.frames.iter().map(|frame| model.value(frame, id));
+            let frames = 0..self.answers.len();
+            let values = frames.map(|frame| model.value(self.answers.coordinates(frame), id));
             values.filter(|&value| value <= lower || value >= upper).count()
         };
         let circles = circles(model);
@@ -202,7 +209,9 @@ impl Tracking {
     /// The errors of each marker used, in the order of each answer's errors.
     pub fn marker_errors(&self) -> Vec<MarkerErrors> {
         let errors = |(m, name): (usize, &String)| {
-            let seen = self.answers.iter().map(|a| a.marker_errors[m]).filter(|e| e.is_finite());
+            let frames = 0..self.answers.len();
+            let errors = frames.map(|frame| self.answers.marker_errors(frame)[m]);
+            let seen = errors.filter(|e| e.is_finite());
             let (sum, max, n) =
                 seen.fold((0.0, 0.0, 0), |(s, m, n), e| (s + e * e, f64::max(m, e), n + 1));
             MarkerErrors { name: name.clone(), rms: (sum / f64::from(n.max(1))).sqrt(), max }

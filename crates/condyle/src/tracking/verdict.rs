@@ -211,7 +211,7 @@ struct Trial<'a> {
     /// The frames, with all labels, and their numbers among those tracked.
     sample: Recording,
     numbers: Vec<usize>,
-    answers: Vec<&'a FrameAnswer>,
+    answers: Vec<FrameAnswer>,
     /// Names of the marker targets, and their places at rest.
     names: &'a [String],
     places: Vec<Vec3>,
@@ -228,12 +228,11 @@ impl<'a> Trial<'a> {
         recording: &Recording,
         tracking: &'a Tracking,
     ) -> Option<Self> {
-        let seen =
-            |answer: &FrameAnswer| answer.marker_errors.iter().filter(|e| e.is_finite()).count();
-        let most = tracking.answers.iter().map(seen).max()?;
-        let answers = tracking.answers.iter().enumerate();
-        let good: Vec<usize> =
-            answers.filter(|(_, a)| 2 * seen(a) >= most.max(1)).map(|(i, _)| i).collect();
+        let errors = |frame: usize| tracking.answers.marker_errors(frame).iter();
+        let seen = |frame: usize| errors(frame).filter(|e| e.is_finite()).count();
+        let frames = 0..tracking.answers.len();
+        let most = frames.clone().map(seen).max()?;
+        let good: Vec<usize> = frames.filter(|&frame| 2 * seen(frame) >= most.max(1)).collect();
         if good.is_empty() {
             return None;
         }
@@ -244,7 +243,7 @@ impl<'a> Trial<'a> {
         let sample = Recording {
             labels: recording.labels.clone(),
             rate: recording.rate,
-            times: numbers.iter().map(|n| tracking.motion.times[*n]).collect(),
+            times: numbers.iter().map(|n| tracking.times[*n]).collect(),
             positions: numbers.iter().flat_map(|n| recording.frame(frame(n)).to_vec()).collect(),
             units: recording.units,
         };
@@ -259,7 +258,7 @@ impl<'a> Trial<'a> {
             rough: None,
             labels: &tracking.labels,
             sample,
-            answers: numbers.iter().map(|n| &tracking.answers[*n]).collect(),
+            answers: numbers.iter().map(|n| tracking.answers.at(*n)).collect(),
             numbers,
             names: &tracking.markers,
             places,
@@ -311,7 +310,7 @@ impl<'a> Trial<'a> {
         };
         let up_axis = [Vec3::X, Vec3::Y, Vec3::Z][up];
         let at_rest = turned(&tracker.model().defaults())?.inverse() * up_axis;
-        let lies = |answer: &&&FrameAnswer| {
+        let lies = |answer: &&FrameAnswer| {
             turned(&answer.coordinates).is_some_and(|now| (now * at_rest).dot(up_axis) < HALF)
         };
         let lying = self.answers.iter().filter(lies).count();

@@ -40,6 +40,11 @@ pub(super) struct Asked {
 }
 
 impl Asked {
+    /// The files that are read.
+    pub(super) fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        self.setup.iter().chain(&self.names)
+    }
+
     pub(super) fn request(&self, model: &Model) -> Result<Request, Failure> {
         let mut request = match &self.setup {
             Some(path) => warned(path, open::request(path)?),

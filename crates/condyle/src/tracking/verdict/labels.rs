@@ -154,7 +154,7 @@ impl Trial<'_> {
 
     /// Where the markers are in each frame as tracked.
     fn tracked(&mut self) -> Option<Vec<Vec<Vec3>>> {
-        let of = |a: &&FrameAnswer| places(self.tracker, &a.coordinates, &mut self.pose);
+        let of = |a: &FrameAnswer| places(self.tracker, &a.coordinates, &mut self.pose);
         self.answers.iter().map(of).collect()
     }
 }
