@@ -41,7 +41,7 @@ fn recording(stated: usize) -> String {
         for marker in 0..10 {
             match (frame * 7 + marker) % 97 {
                 0 => text.push_str("\t\t\t"),
-                n => write!(text, "\t{}.125\t{frame}.5\t-{marker}.0625", 900 + n).unwrap(),
+                n => write!(text, "\t{}.125\t{frame}.5\t-{marker}00.0625", 900 + n).unwrap(),
             }
         }
         text.push('\n');

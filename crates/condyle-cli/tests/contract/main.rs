@@ -13,6 +13,8 @@ mod info;
 #[cfg(unix)]
 mod kill;
 mod leg;
+#[cfg(target_os = "linux")]
+mod long;
 #[cfg(unix)]
 mod output;
 mod pose;
