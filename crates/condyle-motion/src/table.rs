@@ -14,6 +14,18 @@ pub enum AngleUnit {
     Unstated,
 }
 
+impl AngleUnit {
+    /// Its name in a sentence.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Degrees => "degrees",
+            Self::Radians => "radians",
+            Self::Unstated => "no unit of angles",
+        }
+    }
+}
+
 /// Columns of numbers over time.
 ///
 /// Nothing is converted: only with a model is it known which columns are rotations, so
