@@ -24,6 +24,7 @@ mod orientations;
 mod posture;
 mod recording;
 mod sample;
+mod subjects;
 mod table;
 mod virtual_markers;
 mod zeros;

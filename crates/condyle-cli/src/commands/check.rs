@@ -1,6 +1,6 @@
 //! `condyle check`: inconsistencies of a model, and where a motion violates it.
 
-use super::Outcome;
+use super::{Angles, Outcome};
 use crate::failure::Failure;
 use crate::output::{self, columns};
 use clap::Args;
@@ -18,6 +18,9 @@ pub(crate) struct Check {
     model: PathBuf,
     /// A motion whose columns are named after coordinates.
     motion: Option<PathBuf>,
+    /// The unit of angles in a motion that does not state it; without it, it is guessed by their size.
+    #[arg(long, value_enum)]
+    angles: Option<Angles>,
     /// One JSON document on standard output, in radians and metres.
     #[arg(long)]
     json: bool,
@@ -33,7 +36,14 @@ impl Check {
         let mut findings = check::check(model, &read.warnings);
         let mut motion = None;
         if let Some(path) = &self.motion {
-            let table = open::table(path)?;
+            let mut table = open::table(path)?;
+            let settled = open::settled(model, &mut table.value, self.angles.map(Into::into));
+            table.warnings.extend(settled.map_err(|error| {
+                Failure::from(OpenError {
+                    path: path.clone(),
+                    cause: Cause::Content { error, text: None },
+                })
+            })?);
             let mut checked = check::motion::check(model, &table.value);
             checked.findings.splice(0..0, table.warnings);
             motion = Some(checked);

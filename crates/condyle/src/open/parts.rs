@@ -9,7 +9,8 @@ use condyle_diagnostics::{Diagnostic, Read};
 use condyle_formats::text::number;
 use condyle_formats::{Content, ContentKind, Format, Id};
 use condyle_model::Model;
-use condyle_motion::{Motion, Recording, Table};
+use condyle_motion::columns::check_single;
+use condyle_motion::{Motion, Recording};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -257,8 +258,9 @@ pub fn motion_parts<'m>(
     while let Some(part) = parts.next() {
         // Reading the whole says where in the file the error is.
         let Ok((read, known)) = part else { return Ok(None) };
-        let stated = matches!(&read.value, Content::Table(Table { angle_unit, .. })
-            if *angle_unit != condyle_motion::AngleUnit::Unstated);
+        let stated = matches!(&read.value, Content::Table(table)
+            if table.angle_unit != condyle_motion::AngleUnit::Unstated
+                && check_single(model, table).is_ok());
         let read = part_of_motion(model, read, known);
         let like_the_first = warnings.get_or_insert_with(|| read.warnings.clone());
         if !stated || !same(like_the_first, &read.warnings) || read.warned(condyle_motion::BLANK) {
