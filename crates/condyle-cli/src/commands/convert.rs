@@ -265,11 +265,13 @@ fn rewritten(
 ) -> Result<Vec<u8>, Failure> {
     match angles {
         Some(angles) => table.angle_unit = angles.into(),
-        None if table.angle_unit == AngleUnit::Unstated => say(&format!(
-            "warning: {}: it is not stated whether angles are in degrees, and is not in what is written \
+        None if !matches!(table.angle_unit, AngleUnit::Degrees | AngleUnit::Radians) => {
+            say(&format!(
+                "warning: {}: it is not stated whether angles are in degrees, and is not in what is written \
              (state it with --angles)",
-            path.display()
-        )),
+                path.display()
+            ))
+        }
         None => {}
     }
     Ok(encode::table(target, &table)?)

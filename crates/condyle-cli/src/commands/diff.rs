@@ -39,7 +39,9 @@ impl Diff {
         let (mut a, mut b) = (a?, b?);
         for (path, table) in [(&self.a, &mut a), (&self.b, &mut b)] {
             // What a file states is not what is told of the other.
-            let told = self.angles.filter(|_| table.angle_unit == AngleUnit::Unstated);
+            let told = self.angles.filter(|_| {
+                matches!(table.angle_unit, AngleUnit::Unstated | AngleUnit::RadiansAsRule)
+            });
             let said = match &model {
                 Some(model) => open::settled(model, table, told.map(Into::into)),
                 None => table.settle_angles(None, told.map(Into::into)),

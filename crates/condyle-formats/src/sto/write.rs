@@ -62,7 +62,7 @@ pub fn write(table: &Table) -> Result<String, Error> {
     match table.angle_unit {
         AngleUnit::Degrees => text.push_str("inDegrees=yes\n"),
         AngleUnit::Radians => text.push_str("inDegrees=no\n"),
-        AngleUnit::Unstated => {}
+        AngleUnit::RadiansAsRule | AngleUnit::Unstated => {}
     }
     for (key, value) in &table.header {
         let key = plain(key).replace('=', "_");
