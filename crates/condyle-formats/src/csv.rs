@@ -3,13 +3,13 @@
 //! Written: a line of names, `time` first, then rows; numbers with the shortest decimals that read
 //! back the same, blank cells for NaN, names quoted where necessary. Read: the same, with commas,
 //! semicolons or tabs, quotes, and lines that start with `#` before the names (`# key=value`
-//! is kept). CSV has no field for a unit: [`Table::angle_unit`] is unstated, unless a line
-//! `# inDegrees=yes` states it.
+//! is kept). CSV has no field for a unit: angles are in radians as a rule
+//! ([`AngleUnit::RadiansAsRule`]), unless a line `# inDegrees=yes` or `# inDegrees=no` states it. Words for a missing value are NaN
+//! ([`cell`](crate::text::cell)).
 
-use std::collections::HashMap;
 use std::fmt::Write as _;
 
-use crate::text::{Line, check_size, decimal, lines, number, read_decoded};
+use crate::text::{self, Line, check_size, decimal, lines, number, read_decoded, with_comma};
 use condyle_diagnostics::{Diagnostic, Error, Place, Read, Warnings};
 use condyle_motion::{AngleUnit, Table};
 
@@ -20,7 +20,7 @@ use condyle_motion::{AngleUnit, Table};
 ///
 /// # Errors
 ///
-/// `csv/empty`, `csv/quote`, `csv/no-names`, `csv/name`, `csv/duplicate-column`, `csv/cell` (with
+/// `csv/empty`, `csv/quote`, `csv/no-names`, `csv/name`, `csv/cell` (with
 /// line and column), `csv/too-many-cells`, `csv/short-rows`, `csv/time`.
 ///
 /// ```
@@ -34,7 +34,7 @@ use condyle_motion::{AngleUnit, Table};
 pub fn read(text: &str) -> Result<Read<Table>, Error> {
     check_size(text.len())?;
     let mut warnings = Warnings::default();
-    let mut table = Table::default();
+    let mut table = Table { angle_unit: AngleUnit::RadiansAsRule, ..Table::default() };
     let mut lines = lines(text).filter(|line| !line.is_blank());
     let names_line = loop {
         let Some(line) = lines.next() else {
@@ -46,8 +46,8 @@ pub fn read(text: &str) -> Result<Read<Table>, Error> {
         if let Some((key, value)) = remark.split_once('=') {
             let (key, value) = (key.trim(), value.trim());
             match (key.to_ascii_lowercase().as_str(), value.to_ascii_lowercase().as_str()) {
-                ("indegrees", "yes") => table.angle_unit = AngleUnit::Degrees,
-                ("indegrees", "no") => table.angle_unit = AngleUnit::Radians,
+                ("indegrees", "yes" | "true" | "1") => table.angle_unit = AngleUnit::Degrees,
+                ("indegrees", "no" | "false" | "0") => table.angle_unit = AngleUnit::Radians,
                 _ => table.header.push((key.to_owned(), value.to_owned())),
             }
         }
@@ -73,7 +73,7 @@ pub fn read(text: &str) -> Result<Read<Table>, Error> {
         );
     }
     check_names(&names, names_line)?;
-    table.columns = names;
+    table.columns = distinct(&names, names_line, &mut warnings);
     let room = text.len() + 100_000;
     for line in lines {
         if table.values.len() + table.columns.len() > room {
@@ -122,7 +122,7 @@ pub fn write(table: &Table) -> Result<String, Error> {
 pub fn head(table: &Table) -> String {
     let mut text = match table.angle_unit {
         AngleUnit::Degrees => "# inDegrees=yes\ntime".to_owned(),
-        AngleUnit::Radians | AngleUnit::Unstated => "time".to_owned(),
+        _ => "time".to_owned(),
     };
     for column in &table.columns {
         text.push(',');
@@ -243,7 +243,6 @@ fn cells(line: Line<'_>, delimiter: char) -> Result<Vec<String>, Error> {
 const MOST_LETTERS: usize = 1000;
 
 fn check_names(names: &[String], line: Line<'_>) -> Result<(), Error> {
-    let mut seen = HashMap::with_capacity(names.len());
     for (index, name) in names.iter().enumerate() {
         let letters = name.chars().count();
         if letters > MOST_LETTERS || name.contains('\0') {
@@ -254,16 +253,21 @@ fn check_names(names: &[String], line: Line<'_>) -> Result<(), Error> {
             .at(line.place())
             .with_help("is this a table? the first line must name the columns"));
         }
-        if let Some(first) = seen.insert(name.as_str(), index) {
-            return Err(Error::new(
-                "csv/duplicate-column",
-                format!("two columns are called `{name}`: columns {} and {}", first + 1, index + 1),
-            )
-            .at(line.place())
-            .with_help("rename one of them"));
-        }
     }
     Ok(())
+}
+
+/// The names, of equal ones all but the first with `#2` and so on after it.
+fn distinct(names: &[String], line: Line<'_>, warnings: &mut Warnings) -> Vec<String> {
+    text::distinct(names.iter().map(String::as_str), |index, other| {
+        let name = names.get(index).map_or("", String::as_str);
+        warnings.add("csv/duplicate-column", || {
+            let message = format!("two columns are called `{name}`");
+            Diagnostic::warning("csv/duplicate-column", message)
+                .at(line.place())
+                .with_help(format!("the later one is read as `{other}`"))
+        });
+    })
 }
 
 fn add_row(
@@ -290,17 +294,13 @@ fn add_row(
             )
         });
     }
-    // Where another character separates cells, a comma can only be the decimal separator.
-    let with_comma = |cell: &str| {
-        (delimiter != ',' && cell.matches(',').count() == 1 && !cell.contains('.'))
-            .then(|| number(&cell.replace(',', ".")))
-            .flatten()
-    };
+    // A comma inside a cell is not what separates them: it can only be the decimal separator.
     let mut commas = 0;
     let mut value = |index: usize, column: &str| match cells.get(index).map(|cell| cell.trim()) {
         None | Some("") => Ok(f64::NAN),
         Some(cell) => {
-            number(cell).or_else(|| with_comma(cell).inspect(|_| commas += 1)).ok_or_else(|| {
+            let found = text::cell(cell).or_else(|| with_comma(cell).inspect(|_| commas += 1));
+            found.ok_or_else(|| {
                 let clipped: String = cell.chars().take(40).collect();
                 let place = line.text.find(cell).and_then(|at| line.text.get(at..));
                 Error::new("csv/cell", format!("`{clipped}` in column `{column}` is not a number"))
@@ -371,7 +371,6 @@ mod tests {
             ("", "line 1: there is no line of names (the first line must name the columns)"),
             ("time,a\n0,abc\n", "line 2, column 3: `abc` in column `a` is not a number"),
             ("time,a\n0,1,2\n", "line 2: the row has too many cells (expected 2, found 3)"),
-            ("time,a,a\n", "line 1: two columns are called `a`: columns 1 and 2"),
             ("0,1\n", "line 1: the first line holds numbers"),
             ("time,a\n1,1\n0,1\n", "line 3: time goes back from 1 s to 0 s"),
             ("time,a\0b\n", "line 1: the name of column 1 has 3 letters or is binary"),

@@ -230,7 +230,10 @@ pub const FORMATS: &[Format] = &[
         endings: &["csv"],
         reads: &[ContentKind::Motion],
         writes: &[ContentKind::Motion, ContentKind::Recording],
-        sniff: |bytes| starts(bytes, 16).to_ascii_lowercase().starts_with("time,"),
+        sniff: |bytes| {
+            let start = starts(bytes, 16).to_ascii_lowercase();
+            start.starts_with("time,") || start.starts_with("# indegrees=")
+        },
         read: |bytes, _| csv::from_bytes(bytes).map(|read| read.map(Content::Table)),
     },
     #[cfg(feature = "poses")]

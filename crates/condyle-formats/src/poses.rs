@@ -3,14 +3,16 @@
 //! ```text
 //! file  = pose | [ pose, … ]
 //! pose  = { "coordinate": value, … }
-//! value = number (radians or metres) | [x, y, z, w] of an orientation
+//! value = number (radians or metres) | "number unit" | [x, y, z, w] of an orientation
+//! unit  = "deg" | "rad" of an angle; "m" | "cm" | "mm" | "in" | "ft" of a length
 //! ```
 //!
 //! Coordinates that a pose does not name keep their defaults. Poses with a `"time": seconds` each are key
 //! poses, between which a motion goes ([`Poses::keys`]).
 
-use crate::text::utf8;
-use crate::{Diagnostic, Error, Place, Read};
+use crate::text::{number, utf8};
+use crate::{Diagnostic, Error, LengthUnit, Place, Read};
+use condyle_diagnostics::Warnings;
 use condyle_model::{CoordinateKind, Model};
 use condyle_motion::{Keys, Motion};
 use serde_json::Value;
@@ -144,6 +146,43 @@ impl Poses {
         Ok(keys)
     }
 
+    /// What is odd about the values of a model: angles of more than a turn, which may be degrees, and
+    /// orientations that are not of length 1, which are brought to it.
+    #[must_use]
+    pub fn remarks(&self, model: &Model) -> Vec<Diagnostic> {
+        let mut warnings = Warnings::default();
+        for (index, entries) in self.poses.iter().enumerate() {
+            for (key, value) in entries {
+                let Ok(id) = model.find_coordinate(key) else { continue };
+                let kind = model.coordinate(id).kind;
+                let place = self.place(index);
+                if let (CoordinateKind::Rotation, Some(angle)) = (kind, value.as_f64())
+                    && angle.abs() > std::f64::consts::TAU
+                {
+                    warnings.add("poses/angle", || {
+                        let degrees = angle.to_degrees();
+                        let message =
+                            format!("{place}`{key}` is {angle} rad, which is {degrees:.0}°");
+                        let help = format!("write \"{angle} deg\" if degrees are meant");
+                        Diagnostic::warning("poses/angle", message).with_help(help)
+                    });
+                }
+                if let (CoordinateKind::Orientation, Some(list)) = (kind, value.as_array()) {
+                    let q: Vec<f64> = list.iter().filter_map(Value::as_f64).collect();
+                    let length = length(&q);
+                    if (length - 1.0).abs() > 1e-3 {
+                        warnings.add("poses/orientation", || {
+                            let message = format!("{place}`{key}` has length {length:.6}, not 1");
+                            let help = "it is brought to length 1; the order is x, y, z, w";
+                            Diagnostic::warning("poses/orientation", message).with_help(help)
+                        });
+                    }
+                }
+            }
+        }
+        warnings.finish()
+    }
+
     fn located(&self, index: usize, error: Error) -> Error {
         let said = error.into_diagnostics().swap_remove(0);
         let message = format!("{}{}", self.place(index), said.message);
@@ -168,8 +207,8 @@ fn pose<'p>(
         })?;
         named[id.index()] = true;
         let place = model.stored_range(id);
-        let orientation = model.coordinate(id).kind == CoordinateKind::Orientation;
-        stored[place].copy_from_slice(&numbers(key, value, orientation)?);
+        let kind = model.coordinate(id).kind;
+        stored[place].copy_from_slice(&numbers(key, value, kind)?);
     }
     Ok((stored, named))
 }
@@ -197,18 +236,64 @@ pub fn write(model: &Model, stored: &[f64]) -> String {
 }
 
 /// The stored numbers of a coordinate: one, or four of an orientation.
-fn numbers(key: &str, value: &Value, orientation: bool) -> Result<Vec<f64>, Error> {
-    if orientation {
+fn numbers(key: &str, value: &Value, kind: CoordinateKind) -> Result<Vec<f64>, Error> {
+    if kind == CoordinateKind::Orientation {
         let list = value.as_array().map(Vec::as_slice).unwrap_or_default();
         let q: Vec<f64> = list.iter().filter_map(Value::as_f64).collect();
-        return match q.len() == 4 && q.iter().any(|v| *v != 0.0) {
-            true => Ok(q),
-            false => {
-                let message = format!("`{key}` is an orientation: give [x, y, z, w]");
+        let length = length(&q);
+        return match (list.len(), q.len()) {
+            (4, 4) if length > SHORTEST && length.is_finite() => Ok(q),
+            (4, 4) => {
+                let message = format!("the orientation `{key}` has length {length}, not 1");
                 Err(Error::new("poses/orientation", message))
+            }
+            (count, _) => {
+                let message = format!("`{key}` is an orientation: give [x, y, z, w]");
+                let error = Error::new("poses/orientation", message);
+                Err(match value.is_array() {
+                    true => error.with_help(format!("four numbers, not {count} values")),
+                    false => error,
+                })
             }
         };
     }
+    if let Some(text) = value.as_str() {
+        return with_unit(key, text, kind).map(|v| vec![v]);
+    }
     let message = || format!("`{key}` is {value}, not a number (radians or metres)");
     value.as_f64().map(|v| vec![v]).ok_or_else(|| Error::new("poses/number", message()))
+}
+
+/// Orientations of a smaller length have no direction.
+const SHORTEST: f64 = 1e-9;
+
+fn length(q: &[f64]) -> f64 {
+    q.iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
+/// The number of a text such as `90 deg` or `12 mm`, in radians or metres.
+fn with_unit(key: &str, text: &str, kind: CoordinateKind) -> Result<f64, Error> {
+    let text = text.trim();
+    let end = text.find(|c: char| c.is_alphabetic() && !"eE".contains(c) || "°\"".contains(c));
+    let (digits, unit) = text.split_at(end.unwrap_or(text.len()));
+    let unit = unit.trim().trim_end_matches('.').to_lowercase();
+    let wrong = |help: &str| {
+        let message = format!("`{key}` is `{text}`");
+        Err(Error::new("poses/number", message).with_help(help))
+    };
+    let Some(number) = number(digits).filter(|v| v.is_finite()) else {
+        return wrong("give a number, or a text of a number and its unit");
+    };
+    match kind {
+        CoordinateKind::Rotation => match unit.as_str() {
+            "deg" | "degree" | "degrees" | "°" => Ok(number.to_radians()),
+            "rad" | "radian" | "radians" => Ok(number),
+            _ => wrong("it is an angle: give \"90 deg\" or \"1.5 rad\", or a number in radians"),
+        },
+        CoordinateKind::Translation => match LengthUnit::from_name(&unit) {
+            Some(unit) => Ok(unit.to_metres(number)),
+            None => wrong("it is a length: give \"12 mm\" or \"0.012 m\", or a number in metres"),
+        },
+        _ => wrong("it has no unit: give a number"),
+    }
 }

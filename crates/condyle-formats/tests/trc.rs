@@ -1,6 +1,6 @@
 //! Every rule of the TRC reader, one small file each, and the round trip.
 
-use condyle_formats::trc::{self, Dialect};
+use condyle_formats::trc;
 use condyle_formats::{Error, LengthUnit, Read, Recording};
 use proptest::prelude::*;
 
@@ -60,14 +60,6 @@ fn missing_markers_are_blank_nan_or_infinite() {
     assert_eq!(a, [None, None, None, None, None, Some([0.0; 3])]);
     assert_eq!(read.value.gaps().len(), 1);
     assert_eq!(codes(&read), ["trc/part-blank", "trc/frame-count"]);
-}
-
-#[test]
-fn zero_is_missing_only_if_told() {
-    let text = "PathFileType\nDataRate\tUnits\n100\tm\nFrame#\tTime\tA\n1\t0\t0\t0\t0\n";
-    assert_eq!(trc::read(text).unwrap().value.position(0, 0), Some([0.0; 3]));
-    let told = trc::read_with(text, Dialect { zero_is_missing: true }).unwrap();
-    assert_eq!(told.value.position(0, 0), None);
 }
 
 #[test]
@@ -168,11 +160,7 @@ fn units_are_read_or_guessed() {
         assert!(!read.warned("trc/unit"), "{unit}");
     }
     // Two markers 1.7 m apart.
-    for (distance, unit) in [
-        ("1700", LengthUnit::Millimetre),
-        ("170", LengthUnit::Centimetre),
-        ("1.7", LengthUnit::Metre),
-    ] {
+    for (distance, unit) in [("1700", LengthUnit::Millimetre), ("1.7", LengthUnit::Metre)] {
         for name in ["", "furlong", "100"] {
             let row = format!("1\t0\t0\t0\t0\t0\t{distance}\t0\n");
             let read = with(name, "A\t\t\tB", AXES, &row).unwrap();
@@ -181,6 +169,32 @@ fn units_are_read_or_guessed() {
             assert_eq!(codes(&read), ["trc/unit", "trc/unit"]);
         }
     }
+    // A person in centimetres, or a hand in millimetres.
+    let error = with("", "A\t\t\tB", AXES, "1\t0\t0\t0\t0\t0\t170\t0\n").unwrap_err();
+    assert_eq!(error.code(), "trc/unit");
+}
+
+#[test]
+fn blank_cells_between_the_values_of_the_header_shift_nothing() {
+    let small = "1\t0\t0\t0\t0\t0\t17\t0\n";
+    let text = |keys: &str, values: &str| {
+        trc::read(&format!("PathFileType\n{keys}\n{values}\nFrame#\tTime\tA\t\t\tB\n{AXES}{small}"))
+            .unwrap()
+    };
+    let keys = "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate";
+    for values in [
+        "60\t\t60\t\t1\t\t2\t\tmm\t\t60",
+        "60\t\t60\t\t1\t\t2\t\tmm",
+        " 60.0\t\t  60.0\t\t    1\t\t     2\t\t mm\t  60.0",
+    ] {
+        let read = text(keys, values);
+        assert_eq!((read.value.units, read.value.rate), (LengthUnit::Millimetre, 60.0), "{values}");
+        assert_eq!(codes(&read), [""; 0], "{values}: {:?}", read.warnings);
+    }
+    // The value of one key is left out, so that neither column nor order is right.
+    let read = text(keys, "60\t60\t1\tmm\t60\t7");
+    assert_eq!(read.value.units, LengthUnit::Millimetre);
+    assert!(read.warned("trc/header"));
 }
 
 #[test]
@@ -211,7 +225,7 @@ fn the_rate_may_come_from_the_times() {
     assert_eq!(codes(&read), ["trc/rate"]);
     let wrong = text.replace("NumFrames\tUnits\n3", "DataRate\tUnits\n100");
     let read = trc::read(&wrong).unwrap();
-    assert_eq!(read.value.rate, 100.0);
+    assert!((read.value.rate - 50.0).abs() < 1e-9);
     assert_eq!(
         read.warnings[0].to_string(),
         "DataRate is 100 Hz, but the times give 50.000 Hz (the times are used)"
@@ -245,9 +259,133 @@ fn markers_beyond_the_last_name_are_skipped() {
         "line 7, column 17: markers without a name in the rows: 1 \
          (those after the last name were skipped)"
     );
-    // In a later row only, they are a fault.
-    let error = with_rows(&format!("{ROW}{long}")).unwrap_err();
-    assert_eq!(error.code(), "trc/too-many-cells");
+    // They may begin in a later row, and be more in a still later one.
+    let longer = long.replace("1\t0\t1", "3\t0.02\t1").replace('\n', "\t1\t2\t3\n");
+    let later = long.replace("1\t0\t1", "2\t0.01\t1");
+    let read = with_rows(&format!("{ROW}{later}{longer}")).unwrap();
+    assert_eq!(read.value.position(2, 0), Some([0.001, 0.002, 0.003]));
+    assert_eq!(codes(&read), ["trc/nameless", "trc/nameless", "trc/frame-count"]);
+}
+
+/// Rows of three frames at 100 Hz, with something before and behind each frame's number and time.
+fn beside(before: &str, behind: [&str; 3]) -> String {
+    let row = |i: usize| {
+        format!("{before}{}\t{}\t{}{}\t2\t3\t4\t5\t6\n", i + 1, i as f64 / 100.0, behind[i], 10 * i)
+    };
+    (0..3).map(row).collect()
+}
+
+#[test]
+fn rows_that_stand_beside_their_names() {
+    let stamps = ["1700000000000\t", "1700000000010\t", "1700000000020\t"];
+    for (what, labels, axes, rows, code) in [
+        ("as named", "A\t\t\tB", AXES, beside("", [""; 3]), ""),
+        ("a blank cell first", "A\t\t\tB", AXES, beside("\t", [""; 3]), "trc/shifted-rows"),
+        ("two blank cells", "A\t\t\tB", AXES, beside("\t\t", [""; 3]), "trc/shifted-rows"),
+        (
+            "a blank cell behind the time",
+            "A\t\t\tB",
+            AXES,
+            beside("", ["\t"; 3]),
+            "trc/shifted-rows",
+        ),
+        ("a time stamp without a name", "A\t\t\tB", AXES, beside("", stamps), "trc/shifted-rows"),
+        (
+            "a time stamp before the axes",
+            "Timestamp\tA\t\t\tB",
+            "\t\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n",
+            beside("", stamps),
+            "trc/extra-column",
+        ),
+        (
+            "a time stamp, no axes",
+            "Time Stamp\tA\t\t\tB",
+            "",
+            beside("", stamps),
+            "trc/extra-column",
+        ),
+    ] {
+        let read = with("mm", labels, axes, &rows).unwrap_or_else(|e| panic!("{what}: {e}"));
+        assert_eq!(read.value.labels, ["A", "B"], "{what}");
+        assert_eq!(read.value.times, [0.0, 0.01, 0.02], "{what}");
+        for frame in 0..3 {
+            let x = frame as f64 / 100.0;
+            assert_eq!(read.value.position(frame, 0), Some([x, 0.002, 0.003]), "{what}");
+            assert_eq!(read.value.position(frame, 1), Some([0.004, 0.005, 0.006]), "{what}");
+        }
+        let others = ["trc/frame-count", "trc/marker-count"];
+        let found: Vec<_> = codes(&read).into_iter().filter(|c| !others.contains(c)).collect();
+        assert_eq!(found.concat(), code, "{what}: {:?}", read.warnings);
+    }
+    // The last marker is not seen: its cells are blank.
+    let last = "\t1\t0\t1\t2\t3\t\t\t\n\t2\t0.01\t1\t2\t3\t\t\t\n\t3\t0.02\t1\t2\t3\t4\t5\t6\n";
+    let read = with("mm", "A\t\t\tB", AXES, last).unwrap();
+    assert_eq!(read.value.position(1, 0), Some([0.001, 0.002, 0.003]));
+    assert_eq!((read.value.position(1, 1), read.value.rate), (None, 100.0));
+}
+
+#[test]
+fn times_that_contradict_the_rate_are_an_error() {
+    let rows = |step: f64, frames: usize| -> String {
+        let row = |i: usize| format!("{}\t{}\t1\t2\t3\n", 1 + i * frames, step * i as f64);
+        (0..5).map(row).collect()
+    };
+    let read = |rows: &str| with("mm", "A", "", rows);
+    for (step, said) in [
+        (
+            1.0,
+            "DataRate is 100 Hz, but the times give 1.000 Hz (they look like the numbers of frames",
+        ),
+        (10.0, "DataRate is 100 Hz, but the times give 0.100 Hz (they look like milliseconds"),
+        (0.0, "all 5 rows have the time 0 s"),
+    ] {
+        let error = read(&rows(step, 1)).unwrap_err().to_string();
+        assert!(error.contains(said), "{step}: {error}");
+    }
+    // Every hundredth frame, as the numbers of frames say.
+    let some = read(&rows(1.0, 100)).unwrap();
+    assert!((some.value.rate - 1.0).abs() < 1e-9 && !some.warned("trc/rate"));
+    // Left out frames change no step but their own.
+    let left_out = "1\t0\t1\t2\t3\n2\t0.01\t1\t2\t3\n9\t0.08\t1\t2\t3\n10\t0.09\t1\t2\t3\n";
+    let read = read(left_out).unwrap();
+    assert_eq!((read.value.rate, read.warned("trc/rate")), (100.0, false));
+}
+
+#[test]
+fn words_for_missing_values_and_other_styles_of_numbers() {
+    for word in
+        ["NA", "N/A", "null", "None", "-", "--", "*", "1.#QNAN", "-1.#IND", "nan(ind)", "Inf"]
+    {
+        let read = with_rows(&format!("1\t0\t{word}\t{word}\t{word}\t4\t5\t6\n")).unwrap();
+        assert_eq!(read.value.position(0, 0), None, "{word}");
+        assert_eq!(read.value.position(0, 1), Some([0.004, 0.005, 0.006]), "{word}");
+        assert_eq!(codes(&read), [""; 0], "{word}");
+    }
+    let place = Some([0.0015, 0.2, -0.003]);
+    for (row, code) in [
+        ("1\t0\t1.5D+00\t2.0d2\t-3\n", ""),
+        ("\"1\"\t\"0\"\t\"1.5\"\t\"200\"\t\"-3\"\n", ""),
+        ("1\t0,0\t1,5\t200,0\t-3,0\n", "trc/decimal-comma"),
+        ("1\t0\t1.5\t200\t-3\n\u{1a}", ""),
+        ("1\t0\t1.5\t200\t-3\u{1a}\0\0", ""),
+    ] {
+        let read = with_rows(&row.replace('\n', "\t\t\t\n")).unwrap();
+        assert_eq!(read.value.position(0, 0), place, "{row}");
+        let found = codes(&read);
+        assert_eq!(
+            found.iter().find(|c| **c != "trc/short-row").copied().unwrap_or(""),
+            code,
+            "{row}"
+        );
+    }
+    for separator in [',', ';'] {
+        let text = format!(
+            "PathFileType\t4\nDataRate\tNumFrames\tUnits\n100\t1\tmm\nFrame#\tTime\tA\t\t\tB\t\t\n{AXES}{ROW}"
+        );
+        let read = trc::read(&text.replace('\t', &separator.to_string())).unwrap();
+        assert_eq!(read.value.position(0, 1), Some([0.4, 0.5, 0.6]), "{separator}");
+        assert_eq!(codes(&read), [""; 0], "{separator}");
+    }
 }
 
 #[test]
@@ -270,10 +408,7 @@ fn faults_say_where_and_what_would_be_right() {
             "line 7, column 7: `abc` is not a number \
              (expected a coordinate of `A`; a missing value is a blank cell)",
         ),
-        (
-            "1\t0\t1,5\t2\t3\n",
-            "line 7, column 5: `1,5` is not a number (write 1.5: the decimal separator is a point)",
-        ),
+        ("1\t0\t1,5,5\t2\t3\n", "line 7, column 5: `1,5,5` is not a number"),
         (
             "1\t0\t1\t2\t3\t4\t5\t6\t7\n",
             "line 7, column 17: the row has too many cells \

@@ -5,6 +5,7 @@
 //! compared whole: `left_knee/angle` does not belong to a joint set `knee`.
 
 use crate::{AngleUnit, Table};
+use condyle_diagnostics::Error;
 use condyle_model::{CoordinateId, CoordinateKind, Model};
 
 /// The coordinate whose value a column holds: the column's name, or the part of its path before
@@ -55,6 +56,40 @@ pub fn found_columns(model: &Model, id: CoordinateId, table: &Table) -> Vec<Opti
     let names = columns(model, id);
     let parts = parts(model, id).iter();
     parts.zip(names).map(|(part, name)| table.column(&name).or_else(|| by_path(part))).collect()
+}
+
+/// Refuses a table of which two columns have the name of one coordinate: readers call the second `name#2`.
+///
+/// # Errors
+/// `motion/duplicate` with the names.
+///
+/// ```
+/// use condyle_model::ModelBuilder;
+/// use condyle_motion::{Table, columns::check_single};
+/// # use condyle_math::Vec3;
+/// let mut b = ModelBuilder::new("arm");
+/// let forearm = b.segment("forearm", None);
+/// b.hinge("elbow", forearm, "flexion", Vec3::Z);
+/// let model = b.build()?;
+/// let table = |columns: &[&str]| Table {
+///     columns: columns.iter().map(|c| c.to_string()).collect(),
+///     ..Table::default()
+/// };
+/// assert!(check_single(&model, &table(&["flexion", "force", "force#2"])).is_ok());
+/// assert!(check_single(&model, &table(&["flexion", "flexion#2"])).is_err());
+/// # Ok::<(), condyle_diagnostics::Error>(())
+/// ```
+pub fn check_single(model: &Model, table: &Table) -> Result<(), Error> {
+    for cell in cells(model, table) {
+        let Some(name) = cell.column.and_then(|column| table.columns.get(column)) else { continue };
+        let second = format!("{name}#2");
+        if table.columns.iter().any(|other| *other == second) {
+            let message = format!("two columns are called `{name}`, a coordinate of the model");
+            let help = "remove or rename one of them";
+            return Err(Error::new("motion/duplicate", message).with_help(help));
+        }
+    }
+    Ok(())
 }
 
 /// One stored number of a model, and the column of a table that holds it.

@@ -13,17 +13,21 @@
 //! recorded as [`LengthUnit`] and [`AngleUnit`]. [`columns`] assigns columns to coordinates,
 //! [`difference`] compares two motions.
 
+mod angles;
 pub mod columns;
 pub mod difference;
 mod keys;
 mod length_unit;
+mod marker_table;
 mod motion;
 mod orientations;
 mod posture;
 mod recording;
 mod sample;
+mod subjects;
 mod table;
 mod virtual_markers;
+mod zeros;
 
 pub use keys::{Interpolation, Keys};
 pub use length_unit::LengthUnit;
@@ -33,3 +37,4 @@ pub use posture::Posture;
 pub use recording::{Gap, Observed, Recording};
 pub use sample::{Between, between};
 pub use table::{AngleUnit, Table};
+pub use zeros::Zeros;

@@ -9,9 +9,23 @@ pub enum AngleUnit {
     Degrees,
     /// The file states radians.
     Radians,
+    /// The file does not state it, and is of a format that this program writes in radians: CSV.
+    RadiansAsRule,
     /// The file does not state it.
     #[default]
     Unstated,
+}
+
+impl AngleUnit {
+    /// Its name in a sentence.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Degrees => "degrees",
+            Self::Radians => "radians",
+            Self::RadiansAsRule | Self::Unstated => "no unit of angles",
+        }
+    }
 }
 
 /// Columns of numbers over time.

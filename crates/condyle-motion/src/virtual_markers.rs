@@ -47,7 +47,7 @@ impl Recording {
 }
 
 /// Frames per second of evenly spaced times, rounded to the usual precision of such rates.
-fn rate(times: &[f64]) -> f64 {
+pub(crate) fn rate(times: &[f64]) -> f64 {
     match times {
         [first, .., last] if last > first => {
             let rate = (times.len() - 1) as f64 / (last - first);

@@ -289,7 +289,7 @@ pub use condyle_model::{
 };
 pub use condyle_motion::{
     self as motion, AngleUnit, Interpolation, Keys, LengthUnit, Motion, Observed, Posture,
-    Recording, Table,
+    Recording, Table, Zeros,
 };
 
 /// The README's examples, run as tests.

@@ -20,7 +20,7 @@ use condyle_formats::{Content, ContentKind, FORMATS, Format, Id};
 use condyle_model::Model;
 #[cfg(feature = "poses")]
 use condyle_motion::Keys;
-use condyle_motion::{Motion, Recording, Table};
+use condyle_motion::{AngleUnit, Motion, Recording, Table, Zeros};
 use source::{bytes, nameless_format};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -132,14 +132,26 @@ pub fn ending(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
+/// Opens a file of any format as [`content_with`] does, zeros told by the rest of their recording.
+///
+/// # Errors
+/// As [`content_with`].
+pub fn content(path: &Path, wanted: Option<ContentKind>) -> Result<Read<Content>, OpenError> {
+    content_with(path, wanted, Zeros::Told)
+}
+
 /// Opens a file of any format, by its ending or else by its content; `-` is standard input. Where there is
 /// no such file, the name of a [`shipped`] model does. A setup comes with its tasks, if those have a file of their
-/// own.
+/// own. `zeros` says what a marker at 0 0 0 is.
 ///
 /// # Errors
 /// [`OpenError`] with the path and everything that is wrong; [`Cause::Format`] if it is of no known
 /// format, or cannot hold what is `wanted`.
-pub fn content(path: &Path, wanted: Option<ContentKind>) -> Result<Read<Content>, OpenError> {
+pub fn content_with(
+    path: &Path,
+    wanted: Option<ContentKind>,
+    zeros: Zeros,
+) -> Result<Read<Content>, OpenError> {
     #[cfg(feature = "document")]
     if wanted.is_none_or(|kind| kind == ContentKind::Model)
         && !is_standard_input(path)
@@ -169,7 +181,12 @@ pub fn content(path: &Path, wanted: Option<ContentKind>) -> Result<Read<Content>
         failed(path, Cause::Content { error, text })
     })?;
     #[cfg(feature = "opensim")]
-    let read = with_tasks(path, read)?;
+    let mut read = with_tasks(path, read)?;
+    #[cfg(not(feature = "opensim"))]
+    let mut read = read;
+    if let Content::Recording(recording) = &mut read.value {
+        read.warnings.extend(recording.settle_zeros(zeros));
+    }
     match wanted {
         Some(kind) if read.value.kind() != kind => {
             let message =
@@ -225,9 +242,10 @@ fn included(from: &Path, name: &str) -> Result<String, String> {
 fn only<T>(
     path: &Path,
     kind: ContentKind,
+    zeros: Zeros,
     pick: impl FnOnce(Content) -> Option<T>,
 ) -> Result<Read<T>, OpenError> {
-    let Read { value, warnings } = content(path, Some(kind))?;
+    let Read { value, warnings } = content_with(path, Some(kind), zeros)?;
     let value = pick(value).ok_or_else(|| failed(path, Cause::Format { wanted: Some(kind) }))?;
     Ok(Read { value, warnings })
 }
@@ -237,7 +255,7 @@ fn only<T>(
 /// # Errors
 /// As [`content`].
 pub fn model(path: &Path) -> Result<Read<Model>, OpenError> {
-    only(path, ContentKind::Model, |content| match content {
+    only(path, ContentKind::Model, Zeros::Told, |content| match content {
         Content::Model(model) => Some(model),
         #[cfg(feature = "document")]
         Content::Document(document) => Some(document.model),
@@ -245,18 +263,39 @@ pub fn model(path: &Path) -> Result<Read<Model>, OpenError> {
     })
 }
 
-/// Opens a marker recording of any format, as [`content`] does.
+/// Opens a marker recording of any format as [`recording_with`] does, zeros told by the rest of it.
 ///
 /// # Errors
-/// As [`content`].
+/// As [`recording_with`].
 pub fn recording(path: &Path) -> Result<Read<Recording>, OpenError> {
-    if let Some(recording) = parts::recording(path) {
-        return Ok(Read::clean(recording));
-    }
-    only(path, ContentKind::Recording, |content| match content {
-        Content::Recording(recording) => Some(recording),
-        _ => None,
-    })
+    recording_with(path, Zeros::Told)
+}
+
+/// Opens a marker recording of any format, as [`content`] does; of a table over time its markers, which have
+/// three columns each. `zeros` says what a marker at 0 0 0 is.
+///
+/// # Errors
+/// As [`content`]; tables without markers.
+pub fn recording_with(path: &Path, zeros: Zeros) -> Result<Read<Recording>, OpenError> {
+    let table_format = Format::of_ending(&ending(path)).or_else(|| nameless_format(path));
+    let mut read = if let Some(recording) = parts::recording(path) {
+        Read::clean(recording)
+    } else if table_format.is_some_and(|f| matches!(f.id, Id::Mot | Id::Sto | Id::Csv)) {
+        let Read { value, warnings } = table(path)?;
+        let markers = Recording::from_table(&value);
+        let markers =
+            markers.map_err(|error| failed(path, Cause::Content { error, text: None }))?;
+        // What a cell of three numbers is called has no meaning here.
+        let warnings = warnings.into_iter().filter(|said| said.code != "sto/vector-cells");
+        Read { value: markers.value, warnings: warnings.chain(markers.warnings).collect() }
+    } else {
+        return only(path, ContentKind::Recording, zeros, |content| match content {
+            Content::Recording(recording) => Some(recording),
+            _ => None,
+        });
+    };
+    read.warnings.extend(read.value.settle_zeros(zeros));
+    Ok(read)
 }
 
 /// Opens a table over time of any format, such as a motion, as [`content`] does.
@@ -264,7 +303,7 @@ pub fn recording(path: &Path) -> Result<Read<Recording>, OpenError> {
 /// # Errors
 /// As [`content`].
 pub fn table(path: &Path) -> Result<Read<Table>, OpenError> {
-    only(path, ContentKind::Motion, |content| match content {
+    only(path, ContentKind::Motion, Zeros::Told, |content| match content {
         Content::Table(table) => Some(table),
         _ => None,
     })
@@ -354,20 +393,52 @@ pub fn names(path: &Path) -> Result<Read<NameTable>, OpenError> {
         let error = Error::new("file/names", message).with_help(help);
         return Err(failed(path, Cause::Content { error, text: None }));
     }
-    only(path, ContentKind::Names, |content| match content {
+    only(path, ContentKind::Names, Zeros::Told, |content| match content {
         Content::Names(table) => Some(table),
         _ => None,
     })
 }
 
-/// A motion of a model, from a table whose columns are named after its coordinates.
+/// A motion of a model as [`motion_with`] reads it, the unit of its angles not told.
 ///
 /// # Errors
-/// As [`content`].
+/// As [`motion_with`].
 pub fn motion(path: &Path, model: &Model) -> Result<Read<Motion>, OpenError> {
-    let table = table(path)?;
+    motion_with(path, model, None)
+}
+
+/// A motion of a model, from a table whose columns are named after its coordinates. Its angles are in the
+/// unit that is told, else in that which the file states; without both, it is guessed by their size
+/// ([`Table::settle_angles`]), with a warning.
+///
+/// # Errors
+/// As [`content`]; an equal name of two columns of a coordinate; a unit that is not stated and cannot be told.
+pub fn motion_with(
+    path: &Path,
+    model: &Model,
+    angles: Option<AngleUnit>,
+) -> Result<Read<Motion>, OpenError> {
+    let mut table = table(path)?;
+    let said = settled(model, &mut table.value, angles);
+    table
+        .warnings
+        .extend(said.map_err(|error| failed(path, Cause::Content { error, text: None }))?);
     let (value, warnings) = Motion::from_table(model, &table.value);
     Ok(Read { value, warnings: [table.warnings, warnings].concat() })
+}
+
+/// Makes a table that of a motion of a model: the unit of its angles is decided, and no coordinate has two
+/// columns.
+///
+/// # Errors
+/// Those of [`Table::settle_angles`]; `motion/duplicate` where two columns have the name of a coordinate.
+pub fn settled(
+    model: &Model,
+    table: &mut Table,
+    angles: Option<AngleUnit>,
+) -> Result<Vec<Diagnostic>, Error> {
+    condyle_motion::columns::check_single(model, table)?;
+    table.settle_angles(Some(model), angles)
 }
 
 /// Opens what a pose should do.
@@ -376,7 +447,7 @@ pub fn motion(path: &Path, model: &Model) -> Result<Read<Motion>, OpenError> {
 /// As [`content`].
 #[cfg(feature = "document")]
 pub fn goals(path: &Path) -> Result<Read<GoalList>, OpenError> {
-    only(path, ContentKind::Goals, |content| match content {
+    only(path, ContentKind::Goals, Zeros::Told, |content| match content {
         Content::Goals(list) => Some(list),
         _ => None,
     })
@@ -388,7 +459,7 @@ pub fn goals(path: &Path) -> Result<Read<GoalList>, OpenError> {
 /// As [`content`]; names that the model does not have.
 #[cfg(feature = "poses")]
 pub fn poses(path: &Path, model: &Model) -> Result<Read<Resolved>, OpenError> {
-    resolved(path, |poses| poses.resolve(model))
+    resolved(path, model, |poses| poses.resolve(model))
 }
 
 /// Key poses of a model, in JSON: poses with times.
@@ -397,19 +468,21 @@ pub fn poses(path: &Path, model: &Model) -> Result<Read<Resolved>, OpenError> {
 /// As [`content`]; names that the model does not have; times that are missing or do not rise.
 #[cfg(feature = "poses")]
 pub fn keys(path: &Path, model: &Model) -> Result<Read<Keys>, OpenError> {
-    resolved(path, |poses| poses.keys(model))
+    resolved(path, model, |poses| poses.keys(model))
 }
 
 #[cfg(feature = "poses")]
 fn resolved<T>(
     path: &Path,
+    model: &Model,
     resolve: impl FnOnce(&Poses) -> Result<T, Error>,
 ) -> Result<Read<T>, OpenError> {
-    let Read { value: poses, warnings } =
-        only(path, ContentKind::Poses, |content| match content {
+    let Read { value: poses, mut warnings } =
+        only(path, ContentKind::Poses, Zeros::Told, |content| match content {
             Content::Poses(poses) => Some(poses),
             _ => None,
         })?;
+    warnings.extend(poses.remarks(model));
     let value = resolve(&poses);
     let value = value.map_err(|error| failed(path, Cause::Content { error, text: None }))?;
     Ok(Read { value, warnings })

@@ -26,7 +26,7 @@
 
 use crate::matching::match_markers;
 use crate::tracking::posture;
-use condyle_diagnostics::Diagnostic;
+use condyle_diagnostics::{Diagnostic, Error, listed};
 use condyle_math::Vec3;
 use condyle_model::component::Law;
 use condyle_model::{Mode, Model, Pose, SegmentId};
@@ -54,8 +54,10 @@ const ROUNDS: usize = 8;
 const ITERATIONS: usize = 20;
 
 /// What is assumed of markers and bones while a model is scaled.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Assumptions {
+    /// Whose markers are meant, where the labels of several people differ by a prefix.
+    pub subject: Option<String>,
     /// Leave markers where the scaled model has them.
     pub keep_markers: bool,
     /// How well a landmark is known, as a standard deviation in metres.
@@ -66,7 +68,7 @@ pub struct Assumptions {
 
 impl Default for Assumptions {
     fn default() -> Self {
-        Self { keep_markers: false, marker_spread: 0.015, group_spread: 0.08 }
+        Self { subject: None, keep_markers: false, marker_spread: 0.015, group_spread: 0.08 }
     }
 }
 
@@ -122,9 +124,11 @@ pub struct MarkerFit {
 }
 
 /// Why a model could not be scaled.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ScaleError {
+    /// It is not known whose markers are meant.
+    Subject(Error),
     /// Too few markers that the model has were seen standing still.
     TooFewMarkers {
         /// Those that can be used.
@@ -140,7 +144,12 @@ pub enum ScaleError {
 
 impl fmt::Display for ScaleError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self::TooFewMarkers { usable, moving, model, recording } = self;
+        let (usable, moving, model, recording) = match self {
+            Self::Subject(error) => return error.fmt(f),
+            Self::TooFewMarkers { usable, moving, model, recording } => {
+                (usable, moving, model, recording)
+            }
+        };
         let list = |names: &[String]| names.join(", ");
         if model.is_empty() {
             return write!(
@@ -205,7 +214,7 @@ pub fn fit(
     assumed: &Assumptions,
 ) -> Result<Scaled, ScaleError> {
     let mut warnings = vec![];
-    let standing = Standing::find(model, recording, &mut warnings)?;
+    let standing = Standing::find(model, recording, assumed, &mut warnings)?;
     if model.size_groups().is_empty() {
         let said = Diagnostic::warning("scale/no-groups", "the model names no size groups");
         warnings
@@ -288,12 +297,15 @@ impl Standing {
     fn find(
         model: &Model,
         recording: &Recording,
+        assumed: &Assumptions,
         warnings: &mut Vec<Diagnostic>,
     ) -> Result<Self, ScaleError> {
-        let (matches, said) = match_markers(model, &recording.labels);
+        let subject = assumed.subject.as_deref();
+        let matched = match_markers(model, &recording.labels, subject);
+        let (matches, said) = matched.map_err(ScaleError::Subject)?;
         warnings.extend(said);
         let mut standing = Self { markers: vec![], places: vec![] };
-        let (mut usable, mut moving) = (vec![], vec![]);
+        let (mut usable, mut moving, mut by) = (vec![], vec![], vec![]);
         for found in matches {
             let name = &model.markers()[found.marker].name;
             let seen = (0..recording.frames()).filter_map(|f| recording.position(f, found.label));
@@ -301,15 +313,18 @@ impl Standing {
             let Some(place) = median_place(&seen) else { continue };
             let strays = sway(&seen, place);
             if strays > STILL {
-                let message = format!("marker `{name}` moves by {:.0} mm", 1e3 * strays);
-                let said = Diagnostic::warning("scale/moving", message);
-                warnings.push(said.with_help("it is left out: the person should stand still"));
+                by.push(format!("{name} by {:.0} mm", 1e3 * strays));
                 moving.push(name.clone());
                 continue;
             }
             standing.markers.push(found.marker);
             standing.places.push(Some(place.to_array()));
             usable.push(name.clone());
+        }
+        if !by.is_empty() {
+            let message = format!("{} markers move: {}", by.len(), listed(by));
+            let said = Diagnostic::warning("scale/moving", message);
+            warnings.push(said.with_help("they are left out: the person should stand still"));
         }
         if usable.len() >= FEWEST {
             return Ok(standing);
@@ -571,7 +586,7 @@ fn placed(
     let mut pose = Pose::new(&program);
     let _ = program.evaluate(&best.answer.coordinates, Mode::Open, &mut pose);
     let mut points = vec![None; scaled.markers().len()];
-    let mut fits = vec![];
+    let (mut fits, mut far) = (vec![], vec![]);
     let seen = standing.markers.iter().zip(&standing.places).zip(&best.answer.marker_errors);
     for ((&index, place), &error) in seen {
         let marker = &scaled.markers()[index];
@@ -588,11 +603,17 @@ fn placed(
             }
         }
         if moved > FAR {
-            let message = format!("marker `{}` is moved by {:.0} mm", marker.name, 1e3 * moved);
-            let said = Diagnostic::warning("scale/far", message);
-            warnings.push(said.with_help("is it the marker that the model means?"));
+            far.push((moved, format!("{} by {:.0} mm", marker.name, 1e3 * moved)));
         }
         fits.push(MarkerFit { name: marker.name.clone(), error, moved });
+    }
+    if !far.is_empty() {
+        far.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let count = far.len();
+        let message =
+            format!("{count} markers are moved far: {}", listed(far.iter().map(|f| &f.1)));
+        let said = Diagnostic::warning("scale/far", message);
+        warnings.push(said.with_help("are they the markers that the model means?"));
     }
     (scaled.with_markers_at(&points), fits)
 }

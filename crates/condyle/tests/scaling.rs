@@ -191,8 +191,12 @@ fn noise_moves_the_factors_as_far_as_the_spread_says() {
         let trial = recording(&person, &stored, frames, || sigma * dice.normal());
         // A median of n normal numbers has the standard deviation √(π/2n)·σ.
         let spread = sigma * (std::f64::consts::FRAC_PI_2 / frames as f64).sqrt();
-        let assumed =
-            Assumptions { marker_spread: spread, group_spread: 100.0, keep_markers: true };
+        let assumed = Assumptions {
+            marker_spread: spread,
+            group_spread: 100.0,
+            keep_markers: true,
+            ..Assumptions::default()
+        };
         let scaled = fit(&model, &trial, &assumed).expect("a person");
         for (Factor { name, factor, spread, .. }, truth) in scaled.groups.iter().zip(TRUTH) {
             let off = (factor / truth).ln();
@@ -310,7 +314,7 @@ fn markers_that_move_are_left_out() {
     let scaled = fit(&model, &trial, &assumed).expect("rods");
     assert_eq!(scaled.unused, ["a0"]);
     let said: Vec<&str> = scaled.warnings.iter().map(|w| w.message.as_str()).collect();
-    assert_eq!(said, ["marker `a0` moves by 30 mm"]);
+    assert_eq!(said, ["1 markers move: `a0 by 30 mm`"]);
     assert!((scaled.groups[0].factor - 1.2).abs() < 1e-6, "{:?}", scaled.groups[0]);
 }
 

@@ -1,6 +1,6 @@
 //! `condyle check`: inconsistencies of a model, and where a motion violates it.
 
-use super::Outcome;
+use super::{Angles, Outcome};
 use crate::failure::Failure;
 use crate::output::{self, columns};
 use clap::Args;
@@ -20,6 +20,9 @@ pub(crate) struct Check {
     model: PathBuf,
     /// A motion whose columns are named after coordinates, or poses (.json) as `fk` takes them.
     motion: Option<PathBuf>,
+    /// The unit of angles in a motion that does not state it; without it, it is guessed by their size.
+    #[arg(long, value_enum)]
+    angles: Option<Angles>,
     /// One JSON document on standard output, in radians and metres.
     #[arg(long)]
     json: bool,
@@ -43,7 +46,7 @@ impl Check {
         if let Some(path) = &self.motion {
             let (table, separate) = match poses(path, model)? {
                 Some(poses) => (poses, true),
-                None => (open::table(path)?, false),
+                None => (self.table(path, model)?, false),
             };
             let mut checked = check::motion::check(model, &table.value);
             if separate {
@@ -75,6 +78,17 @@ impl Check {
         }
         output::print(text.as_bytes())?;
         Ok(outcome(broken))
+    }
+
+    /// A motion as a table, its angles in a unit that is known or guessed.
+    fn table(&self, path: &Path, model: &Model) -> Result<Read<Table>, Failure> {
+        let mut table = open::table(path)?;
+        let settled = open::settled(model, &mut table.value, self.angles.map(Into::into));
+        table.warnings.extend(settled.map_err(|error| {
+            let cause = Cause::Content { error, text: None };
+            Failure::from(OpenError { path: path.to_owned(), cause })
+        })?);
+        Ok(table)
     }
 
     /// A file that could be read, but whose model contradicts itself, is a finding; any other error

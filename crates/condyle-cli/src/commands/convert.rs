@@ -2,7 +2,7 @@
 
 mod includes;
 
-use super::{Limits, Outcome};
+use super::{Angles, Limits, Outcome};
 use crate::failure::{Failure, warn_about, warned};
 use crate::motion_format as format;
 use crate::output;
@@ -31,6 +31,9 @@ pub(crate) struct Convert {
     /// scale in its parent at every frame, for programs without joint sets.
     #[arg(long, value_name = "M")]
     model: Option<PathBuf>,
+    /// The unit of angles in a motion that does not state it; without it, it is guessed by their size.
+    #[arg(long, value_enum)]
+    angles: Option<Angles>,
     /// Poses (.json) with a `time` each become a motion at so many frames a second.
     #[arg(long, value_name = "N", requires = "model")]
     rate: Option<f64>,
@@ -176,12 +179,14 @@ impl Convert {
             if self.limits == Limits::On {
                 return Err(Failure::new(format!("{what} there are no limits to apply")));
             }
-            return rewritten(&self.input, table, target);
+            return rewritten(&self.input, table, self.angles, target);
         };
         let model = warned(model_path, open::model(model_path)?);
         let mut motion = match moving {
             Moving::Poses(poses) => self.poses(&poses, &model)?,
-            Moving::Table(table) => {
+            Moving::Table(mut table) => {
+                let settled = open::settled(&model, &mut table, self.angles.map(Into::into));
+                warn_about(&self.input, &settled.map_err(|error| self.wrong(error))?);
                 let (motion, warnings) = Motion::from_table(&model, &table);
                 warn_about(&self.input, &warnings);
                 motion
@@ -211,12 +216,15 @@ impl Convert {
         format::encoded(target, &model, &motion, &self.name(), None, &[])
     }
 
+    fn wrong(&self, error: Error) -> Failure {
+        let cause = Cause::Content { error, text: None };
+        Failure::from(OpenError { path: self.input.clone(), cause })
+    }
+
     /// Poses as frames, or as keys between which a motion goes.
     fn poses(&self, poses: &Poses, model: &Model) -> Result<Motion, Failure> {
-        let fail = |error: Error| {
-            let cause = Cause::Content { error, text: None };
-            Failure::from(OpenError { path: self.input.clone(), cause })
-        };
+        let fail = |error: Error| self.wrong(error);
+        warn_about(&self.input, &poses.remarks(model));
         let Some(rate) = self.rate else {
             return Ok(poses.resolve(model).map_err(fail)?.motion);
         };
@@ -256,18 +264,23 @@ enum Moving {
     Table(Table),
 }
 
-/// A table in another format, number by number, with the unit of its angles stated.
-fn rewritten(path: &Path, mut table: Table, target: &Format) -> Result<Vec<u8>, Failure> {
-    if table.angle_unit == AngleUnit::Unstated {
-        // A CSV file without a stated unit is in radians: this program writes it like that.
-        if open::ending(path) != "csv" {
+/// A table in another format, number by number, with the unit of its angles stated as far as it is known.
+fn rewritten(
+    path: &Path,
+    mut table: Table,
+    angles: Option<Angles>,
+    target: &Format,
+) -> Result<Vec<u8>, Failure> {
+    match angles {
+        Some(angles) => table.angle_unit = angles.into(),
+        None if !matches!(table.angle_unit, AngleUnit::Degrees | AngleUnit::Radians) => {
             say(&format!(
-                "warning: {}: the header does not state whether angles are in degrees; taken as \
-                 radians (add the line inDegrees=yes if they are not)",
+                "warning: {}: it is not stated whether angles are in degrees, and is not in what is written \
+             (state it with --angles)",
                 path.display()
-            ));
+            ))
         }
-        table.angle_unit = AngleUnit::Radians;
+        None => {}
     }
     Ok(encode::table(target, &table)?)
 }

@@ -1,14 +1,15 @@
 //! `condyle diff`: two motions, coordinate by coordinate.
 
-use super::Outcome;
-use crate::failure::{Failure, warned};
+use super::{Angles, Outcome};
+use crate::failure::{Failure, warn_about, warned};
 use crate::output::{self, columns, wrapped};
 use crate::screen::say;
 use clap::Args;
 use condyle::motion::difference::{Comparison, Difference, Incomparable, compare};
-use condyle::{AngleUnit, Table, open};
+use condyle::open::{Cause, OpenError};
+use condyle::{AngleUnit, Error, Table, open};
 use serde_json::{Value, json};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(crate) struct Diff {
@@ -19,6 +20,9 @@ pub(crate) struct Diff {
     /// The model of both; with it rotations are known, and compared in degrees.
     #[arg(long, value_name = "M")]
     model: Option<PathBuf>,
+    /// The unit of angles in motions that do not state it; without it, it is guessed by their size.
+    #[arg(long, value_enum)]
+    angles: Option<Angles>,
     /// One JSON document on standard output.
     #[arg(long)]
     json: bool,
@@ -32,10 +36,19 @@ impl Diff {
         };
         let [a, b] =
             [&self.a, &self.b].map(|path| open::table(path).map(|read| warned(path, read)));
-        let (a, b) = (a?, b?);
-        if model.is_none()
-            && (a.angle_unit == AngleUnit::Degrees) != (b.angle_unit == AngleUnit::Degrees)
-        {
+        let (mut a, mut b) = (a?, b?);
+        for (path, table) in [(&self.a, &mut a), (&self.b, &mut b)] {
+            // What a file states is not what is told of the other.
+            let told = self.angles.filter(|_| {
+                matches!(table.angle_unit, AngleUnit::Unstated | AngleUnit::RadiansAsRule)
+            });
+            let said = match &model {
+                Some(model) => open::settled(model, table, told.map(Into::into)),
+                None => table.settle_angles(None, told.map(Into::into)),
+            };
+            warn_about(path, &said.map_err(|error| wrong(path, error))?);
+        }
+        if model.is_none() && a.angle_unit != b.angle_unit {
             say(&format!(
                 "warning: {} has {}, {} has {}; without --model rotations cannot be distinguished \
                  from lengths, so the numbers are compared without conversion",
@@ -107,12 +120,13 @@ impl Diff {
     }
 }
 
+fn wrong(path: &Path, error: Error) -> Failure {
+    let cause = Cause::Content { error, text: None };
+    Failure::from(OpenError { path: path.to_owned(), cause })
+}
+
 fn unit_name(table: &Table) -> &'static str {
-    match table.angle_unit {
-        AngleUnit::Degrees => "degrees",
-        AngleUnit::Radians => "radians",
-        AngleUnit::Unstated => "no unit, which means radians",
-    }
+    table.angle_unit.name()
 }
 
 fn span(times: &[f64]) -> String {

@@ -1,6 +1,6 @@
 //! `condyle fk`: world transforms.
 
-use super::{Limits, Outcome};
+use super::{Angles, Limits, Outcome};
 use crate::failure::{Failure, warned};
 use crate::output::{self, Output};
 use crate::screen::say;
@@ -21,6 +21,9 @@ pub(crate) struct Fk {
     /// A motion whose columns are named after coordinates.
     #[arg(long, value_name = "M")]
     motion: Option<PathBuf>,
+    /// The unit of angles in a motion that does not state it; without it, it is guessed by their size.
+    #[arg(long, value_enum)]
+    angles: Option<Angles>,
     /// First move coordinates into their ranges.
     #[arg(long, value_enum, default_value_t = Limits::Off)]
     limits: Limits,
@@ -44,8 +47,10 @@ impl Fk {
         let model = warned(&self.model, open::model(&self.model)?);
         let long = match &self.motion {
             // Never the whole of it in memory.
-            Some(path) => open::motion_parts(path, &model)?.map(|parts| warned(path, parts)),
-            None => None,
+            Some(path) if self.angles.is_none() => {
+                open::motion_parts(path, &model)?.map(|parts| warned(path, parts))
+            }
+            _ => None,
         };
         let frames = match long {
             Some(parts) => {
@@ -72,7 +77,7 @@ impl Fk {
 
     fn requests(&self, model: &Model) -> Result<Resolved, Failure> {
         if let Some(path) = &self.motion {
-            let motion = warned(path, open::motion(path, model)?);
+            let motion = warned(path, open::motion_with(path, model, self.angles.map(Into::into))?);
             return Ok(Resolved { motion, named: vec![] });
         }
         let Some(path) = &self.pose else {

@@ -6,7 +6,7 @@ mod recording;
 mod setup;
 mod table;
 
-use super::Outcome;
+use super::{Outcome, ZerosArgument, zeros};
 use crate::failure::{Failure, warned};
 use crate::output;
 use clap::Args;
@@ -21,6 +21,12 @@ pub(crate) struct Info {
     /// A model (a file, or the name of a shipped one), a marker recording, a motion or another table,
     /// a setup of tracking, or a table of names.
     file: PathBuf,
+    /// What a marker at exactly 0 0 0 is; without it, it is missing where it is elsewhere in other frames.
+    #[arg(long, value_enum)]
+    zeros: Option<ZerosArgument>,
+    /// Whose markers are shown, where the labels of several people begin with their names: `Anna:RFHD`.
+    #[arg(long, value_name = "NAME")]
+    subject: Option<String>,
     /// One JSON document on standard output, in radians and metres.
     #[arg(long)]
     json: bool,
@@ -28,7 +34,11 @@ pub(crate) struct Info {
 
 impl Info {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
-        let content = warned(&self.file, open::content(&self.file, None)?);
+        let read = open::content_with(&self.file, None, zeros(self.zeros))?;
+        let mut content = warned(&self.file, read);
+        if let (Content::Recording(recording), Some(subject)) = (&mut content, &self.subject) {
+            *recording = recording.of_subject(subject)?;
+        }
         if self.json {
             output::print_json(&to_json(&content))?;
         } else {

@@ -15,7 +15,7 @@ use crate::failure::Failure;
 use clap::builder::PossibleValuesParser;
 use clap::{Parser, Subcommand, ValueEnum};
 use condyle::formats::{FORMATS, Format};
-use condyle::open;
+use condyle::{AngleUnit, Zeros, open};
 
 /// Anatomical joints: models, limits, and tracking of markers.
 #[derive(Debug, Parser)]
@@ -63,6 +63,40 @@ enum Command {
 pub(crate) enum Limits {
     Off,
     On,
+}
+
+/// What a marker at exactly 0 0 0 is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ZerosArgument {
+    /// A place like any other.
+    Keep,
+    /// Not seen.
+    Missing,
+}
+
+/// Without the argument, the rest of the recording tells.
+pub(crate) fn zeros(argument: Option<ZerosArgument>) -> Zeros {
+    match argument {
+        None => Zeros::Told,
+        Some(ZerosArgument::Keep) => Zeros::Keep,
+        Some(ZerosArgument::Missing) => Zeros::Missing,
+    }
+}
+
+/// The unit of angles in a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Angles {
+    Deg,
+    Rad,
+}
+
+impl From<Angles> for AngleUnit {
+    fn from(angles: Angles) -> Self {
+        match angles {
+            Angles::Deg => Self::Degrees,
+            Angles::Rad => Self::Radians,
+        }
+    }
 }
 
 /// How a command ended.

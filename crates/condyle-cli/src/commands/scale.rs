@@ -1,6 +1,6 @@
 //! `condyle scale`: a model and a person who stands still in, a model of that person out.
 
-use super::Outcome;
+use super::{Outcome, ZerosArgument, zeros};
 use crate::failure::{Failure, warn_about, warned};
 use crate::output;
 use clap::Args;
@@ -23,6 +23,12 @@ pub(crate) struct Scale {
     /// The scaled model, a document (.toml), or `-`.
     #[arg(short, long, value_name = "SUBJECT.toml")]
     output: PathBuf,
+    /// Whose markers are meant, where the labels of several people begin with their names: `Anna:RFHD`.
+    #[arg(long, value_name = "NAME")]
+    subject: Option<String>,
+    /// What a marker at exactly 0 0 0 is; without it, it is missing where it is elsewhere in other frames.
+    #[arg(long, value_enum)]
+    zeros: Option<ZerosArgument>,
     /// Keep the markers of the scaled model instead of moving them to where they were recorded.
     #[arg(long)]
     keep_markers: bool,
@@ -57,8 +63,12 @@ impl Scale {
         }
         output::check_distinct(&[&self.model, &self.trial], &[&self.output])?;
         let model = warned(&self.model, open::model(&self.model)?);
-        let recording = warned(&self.trial, open::recording(&self.trial)?);
-        let assumed = Assumptions { keep_markers: self.keep_markers, ..Assumptions::default() };
+        let recording = warned(&self.trial, open::recording_with(&self.trial, zeros(self.zeros))?);
+        let assumed = Assumptions {
+            subject: self.subject.clone(),
+            keep_markers: self.keep_markers,
+            ..Assumptions::default()
+        };
         let scaled = fit(&model, &recording, &assumed)
             .map_err(|error| Failure::new(format!("{}: {error}", self.trial.display())))?;
         warn_about(&self.trial, &scaled.warnings);

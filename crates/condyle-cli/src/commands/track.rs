@@ -5,7 +5,7 @@ mod places;
 mod report;
 mod request;
 
-use super::Outcome;
+use super::{Outcome, zeros};
 use crate::digest::{Digest, Hashed};
 use crate::failure::{Failure, warn_about, warned};
 use crate::motion_format;
@@ -78,7 +78,7 @@ impl Track {
         let mut request = self.asked.request(&model)?;
         request.threads = self.threads.map(usize::from);
         let made_from = match places.iter().any(|places| places.report.is_some()) {
-            true => done::of_run(&self.model, &model, &request, format),
+            true => done::of_run(&self.model, &model, &request, zeros(self.asked.zeros), format),
             false => Digest::default(),
         };
         let run = Run { model, request, format, made_from, asked: &self };
@@ -148,7 +148,7 @@ impl Run<'_> {
             let holds = !failed && report["verdict"]["plausible"] == true;
             return Ok(Done { report, holds });
         }
-        let recording = warned(trial, open::recording(trial)?);
+        let recording = warned(trial, open::recording_with(trial, zeros(self.asked.asked.zeros))?);
         let bar = frames_bar(&trial.file_name().unwrap_or_default().to_string_lossy());
         let mut solved = Instant::now();
         let mut progress = |done: usize, total: usize| {

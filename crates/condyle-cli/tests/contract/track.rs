@@ -138,10 +138,8 @@ fn guessed_names_are_warnings_and_strangers_an_error() {
     let guessed = whole(2).replace("HIP", "Anna:HIP").replace("SHIN", "shin");
     folder.write("guessed.trc", guessed);
     let run = folder.condyle(&["track", "leg.osim", "guessed.trc", "--json"]);
-    assert!(
-        run.err.contains("marker `Anna:HIP` is taken for the model's `HIP` without its prefix")
-    );
-    assert!(run.err.contains("marker `shin` is taken for the model's `SHIN` ignoring case"));
+    assert!(run.err.contains("markers are taken without their prefix `Anna:`: `HIP`"));
+    assert!(run.err.contains("markers are taken ignoring case: `shin for SHIN`"));
     assert_eq!(run.json()["markers_used"], 6);
     let mut strangers = whole(2);
     for (name, ..) in leg::MARKERS {

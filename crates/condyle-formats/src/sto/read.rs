@@ -1,16 +1,17 @@
 //! Reading: names, rows and cells of several numbers.
 
-use std::collections::HashMap;
-
 use super::header;
-use crate::text::{Line, check_size, last_line, lines, number, read_decoded};
-use condyle_diagnostics::{Diagnostic, Error, Place, Read, Warnings};
+use crate::text::{
+    self, Line, cell, check_size, last_line, lines, read_decoded, unquoted, with_comma,
+};
+use condyle_diagnostics::{Diagnostic, Error, Read, Warnings};
 use condyle_motion::Table;
 
 /// How cells are separated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Delimiter {
     Tab,
+    Semicolon,
     Comma,
     Space,
 }
@@ -19,6 +20,8 @@ impl Delimiter {
     fn of(names: &str) -> Self {
         if names.trim().contains('\t') {
             Self::Tab
+        } else if names.contains(';') {
+            Self::Semicolon
         } else if names.contains(',') {
             Self::Comma
         } else {
@@ -29,9 +32,10 @@ impl Delimiter {
     /// The cells of a line, without blank ones at its end.
     fn cells(self, line: &str) -> Vec<&str> {
         let mut cells: Vec<&str> = match self {
-            Self::Tab => line.split('\t').map(str::trim).collect(),
-            Self::Comma => line.split(',').map(str::trim).collect(),
-            Self::Space => line.split_whitespace().collect(),
+            Self::Tab => line.split('\t').map(unquoted).collect(),
+            Self::Semicolon => line.split(';').map(unquoted).collect(),
+            Self::Comma => line.split(',').map(unquoted).collect(),
+            Self::Space => line.split_whitespace().map(unquoted).collect(),
         };
         while cells.last().is_some_and(|cell| cell.is_empty()) {
             cells.pop();
@@ -44,7 +48,7 @@ impl Delimiter {
 ///
 /// # Errors
 ///
-/// `sto/empty`, `sto/no-endheader`, `sto/no-names`, `sto/no-time`, `sto/duplicate-column`,
+/// `sto/empty`, `sto/no-endheader`, `sto/no-names`, `sto/no-time`,
 /// `sto/cell` (with line and column), `sto/cell-width`, `sto/too-many-cells`, `sto/short-rows`,
 /// `sto/time`.
 ///
@@ -70,10 +74,36 @@ pub fn read(text: &str) -> Result<Read<Table>, Error> {
     };
     let delimiter = Delimiter::of(names_line.text);
     let mut names = delimiter.cells(names_line.text);
-    let timed = names.first().is_some_and(|name| name.eq_ignore_ascii_case("time"));
-    if timed {
+    if names.len() > 1 && names.iter().all(|name| cell(name).or_else(|| with_comma(name)).is_some())
+    {
+        return Err(Error::new(
+            "sto/no-names",
+            "the line after `endheader` holds numbers, not names",
+        )
+        .at(names_line.place())
+        .with_help("a line of names must come first: `time` and one name for each column"));
+    }
+    let is_time = |name: &&str| {
+        let bare = name.split(['(', '[', ' ']).next().unwrap_or(name);
+        bare.eq_ignore_ascii_case("time")
+    };
+    // The name of the first column is left out, or all names are one for each cell after it.
+    let blank = names.first().is_some_and(|name| name.is_empty());
+    let nameless = !blank
+        && header.range.is_none()
+        && lines.clone().next().is_some_and(|row| {
+            let cells = delimiter.cells(row.text);
+            delimiter != Delimiter::Space && cells.len() == names.len() + 1
+        });
+    let timed = names.first().is_some_and(is_time) || blank || nameless;
+    if names.first().is_some_and(is_time) || blank {
         names.remove(0);
-    } else if header.range.is_none() {
+    }
+    if blank || nameless {
+        let said = Diagnostic::warning("sto/no-time", "the first column has no name");
+        warnings.push(said.at(names_line.place()).with_help("its numbers are taken as the times"));
+    }
+    if !timed && header.range.is_none() {
         return Err(Error::new("sto/no-time", "the first column is not `time`")
             .at(names_line.place())
             .with_help("the line after `endheader` must name the columns, `time` first"));
@@ -93,11 +123,12 @@ pub fn read(text: &str) -> Result<Read<Table>, Error> {
             .with_help("the names are used"),
         );
     }
-    let names = distinct(&names, names_line, &mut warnings)?;
+    let names = distinct(&names, names_line, &mut warnings);
     let mut rows = Rows {
         delimiter,
         timed,
         names: &names,
+        decimal_comma: decimal_comma(&header, delimiter, lines.clone()),
         widths: Vec::new(),
         room: text.len() + 100_000,
         times: Vec::new(),
@@ -106,7 +137,11 @@ pub fn read(text: &str) -> Result<Read<Table>, Error> {
     for line in lines {
         rows.add(line, &mut warnings)?;
     }
-    let Rows { widths, mut times, values, .. } = rows;
+    let Rows { widths, mut times, values, decimal_comma, .. } = rows;
+    if decimal_comma {
+        let said = Diagnostic::warning("sto/decimal-comma", "the decimal separator is a comma");
+        warnings.push(said.at(names_line.place()));
+    }
     if times.is_empty() {
         warnings.push(Diagnostic::warning("sto/no-rows", "the table has no rows"));
     }
@@ -125,7 +160,7 @@ pub fn read(text: &str) -> Result<Read<Table>, Error> {
     if let (false, Some([start, end])) = (timed, header.range) {
         spread(&mut times, start, end, &mut warnings);
     }
-    let columns = widen(&names, &widths, names_line.place(), &mut warnings)?;
+    let columns = widen(&names, &widths, names_line, &mut warnings);
     let table = Table {
         name: header.name,
         columns,
@@ -146,40 +181,69 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Read<Table>, Error> {
     read_decoded(bytes, read)
 }
 
-/// The names, if no two are the same; a column without one is named by its number.
-fn distinct(names: &[&str], line: Line<'_>, warnings: &mut Warnings) -> Result<Vec<String>, Error> {
-    let mut columns: HashMap<String, usize> = HashMap::with_capacity(names.len());
-    let mut distinct = Vec::with_capacity(names.len());
-    for (index, name) in names.iter().enumerate() {
-        let number = index + 2;
-        let name = if name.is_empty() {
+/// Whether commas are decimal separators, not those between the numbers of a cell: they are in the times,
+/// or in cells of single numbers.
+fn decimal_comma<'a>(
+    header: &header::Header,
+    delimiter: Delimiter,
+    mut rows: impl Iterator<Item = Line<'a>>,
+) -> bool {
+    if delimiter == Delimiter::Comma {
+        return false;
+    }
+    let kind = header.pairs.iter().find(|(key, _)| key.eq_ignore_ascii_case("datatype"));
+    let vectors = kind.is_some_and(|(_, kind)| !kind.eq_ignore_ascii_case("double"));
+    let mut commas = false;
+    let all_single =
+        |cells: &[&str]| cells.iter().all(|cell| !cell.contains(',') || with_comma(cell).is_some());
+    // The first times may be whole numbers.
+    let contradicted = rows.any(|row| {
+        let cells = delimiter.cells(row.text);
+        commas |= cells.iter().any(|cell| cell.contains(','));
+        !all_single(&cells)
+    });
+    commas && !contradicted && !vectors
+}
+
+/// The names, of equal ones all but the first with `#2` and so on after it; a column without one is named
+/// by its number.
+fn distinct(names: &[&str], line: Line<'_>, warnings: &mut Warnings) -> Vec<String> {
+    let named: Vec<String> = names
+        .iter()
+        .enumerate()
+        .map(|(index, name)| {
+            if !name.is_empty() {
+                return (*name).to_owned();
+            }
+            let number = index + 2;
             warnings.add("sto/unnamed", || {
                 Diagnostic::warning("sto/unnamed", format!("column {number} has no name"))
                     .at(line.place())
                     .with_help(format!("it is called `column_{number}`"))
             });
             format!("column_{number}")
-        } else {
-            (*name).to_owned()
-        };
-        if let Some(first) = columns.insert(name.clone(), number) {
-            return Err(Error::new(
-                "sto/duplicate-column",
-                format!("columns {first} and {number} are both called `{name}`"),
-            )
-            .at(line.place())
-            .with_help("rename one of them"));
-        }
-        distinct.push(name);
-    }
-    Ok(distinct)
+        })
+        .collect();
+    text::distinct(named.iter().map(String::as_str), |index, other| {
+        let name = named.get(index).map_or("", String::as_str);
+        warnings.add(DUPLICATE, || {
+            Diagnostic::warning(DUPLICATE, format!("two columns are called `{name}`"))
+                .at(line.place())
+                .with_help(format!("the later one, column {}, is read as `{other}`", index + 2))
+        });
+    })
 }
+
+/// Two columns with one name.
+const DUPLICATE: &str = "sto/duplicate-column";
 
 /// The rows read so far.
 struct Rows<'n> {
     delimiter: Delimiter,
     timed: bool,
     names: &'n [String],
+    /// Whether a comma is a decimal separator.
+    decimal_comma: bool,
     /// Numbers per cell, by column; found in the first row.
     widths: Vec<usize>,
     /// How many values the size of the text allows for.
@@ -233,13 +297,13 @@ impl Rows<'_> {
         self.times.push(time);
         for (name, width) in self.names.iter().zip(&self.widths) {
             let cell = cells.next().unwrap_or_default();
-            if cell.is_empty() {
+            if cell.is_empty() || (*width > 1 && is_missing(cell)) {
                 self.values.extend(std::iter::repeat_n(f64::NAN, *width));
                 continue;
             }
             let before = self.values.len();
             for part in self.parts(cell).collect::<Vec<_>>() {
-                let value = number(part).ok_or_else(|| not_a_number(line, part, name))?;
+                let value = self.number(part).ok_or_else(|| not_a_number(line, part, name))?;
                 self.values.push(value);
             }
             let found = self.values.len() - before;
@@ -258,11 +322,16 @@ impl Rows<'_> {
     /// The numbers of a cell; a vector's are separated by commas.
     fn parts<'c>(&self, cell: &'c str) -> impl Iterator<Item = &'c str> + use<'c> {
         // Where commas separate cells, none is left inside one.
-        cell.trim_start_matches(['~', '[', '(']).trim_end_matches([']', ')']).split(',')
+        let most = if self.decimal_comma { 1 } else { usize::MAX };
+        cell.trim_start_matches(['~', '[', '(']).trim_end_matches([']', ')']).splitn(most, ',')
+    }
+
+    fn number(&self, text: &str) -> Option<f64> {
+        cell(text).or_else(|| with_comma(text).filter(|_| self.decimal_comma))
     }
 
     fn time(&self, line: Line<'_>, cell: &str, warnings: &mut Warnings) -> Result<f64, Error> {
-        let time = match number(cell) {
+        let time = match self.number(cell) {
             Some(time) if time.is_finite() => time,
             None if !cell.is_empty() => return Err(not_a_number(line, cell, "time")),
             _ => {
@@ -289,6 +358,11 @@ impl Rows<'_> {
     }
 }
 
+/// Whether a cell says that its value is missing.
+fn is_missing(text: &str) -> bool {
+    cell(text).is_some_and(f64::is_nan)
+}
+
 fn not_a_number(line: Line<'_>, cell: &str, column: &str) -> Error {
     let clipped: String = cell.chars().take(40).collect();
     Error::new("sto/cell", format!("`{clipped}` in column `{column}` is not a number"))
@@ -312,11 +386,11 @@ fn spread(times: &mut [f64], start: f64, end: f64, warnings: &mut Warnings) {
 fn widen(
     names: &[String],
     widths: &[usize],
-    place: Place,
+    line: Line<'_>,
     warnings: &mut Warnings,
-) -> Result<Vec<String>, Error> {
+) -> Vec<String> {
     if widths.iter().all(|width| *width == 1) {
-        return Ok(names.to_vec());
+        return names.to_vec();
     }
     let mut columns = Vec::with_capacity(widths.iter().sum());
     for (name, width) in names.iter().zip(widths) {
@@ -326,21 +400,11 @@ fn widen(
             columns.extend((1..=*width).map(|part| format!("{name}_{part}")));
         }
     }
-    let mut seen = HashMap::with_capacity(columns.len());
-    for (index, column) in columns.iter().enumerate() {
-        if let Some(first) = seen.insert(column.as_str(), index) {
-            return Err(Error::new(
-                "sto/duplicate-column",
-                format!("columns {} and {} would both be called `{column}`", first + 2, index + 2),
-            )
-            .at(place)
-            .with_help("cells of several numbers become columns `name_1`, `name_2`, ..."));
-        }
-    }
     warnings.push(
         Diagnostic::warning("sto/vector-cells", "cells hold several numbers")
-            .at(place)
+            .at(line.place())
             .with_help("they are read as columns `name_1`, `name_2`, ..., in the file's order"),
     );
-    Ok(columns)
+    let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
+    distinct(&columns, line, warnings)
 }

@@ -68,7 +68,7 @@ pub fn head(table: &Table, rows: usize) -> Result<String, Error> {
     match table.angle_unit {
         AngleUnit::Degrees => text.push_str("inDegrees=yes\n"),
         AngleUnit::Radians => text.push_str("inDegrees=no\n"),
-        AngleUnit::Unstated => {}
+        AngleUnit::RadiansAsRule | AngleUnit::Unstated => {}
     }
     for (key, value) in &table.header {
         let key = plain(key).replace('=', "_");

@@ -1,4 +1,4 @@
-//! Bytes to text: UTF-8, UTF-16 with a byte order mark, or Latin-1 as the last resort.
+//! Bytes to text: UTF-8, UTF-16, or Latin-1 as the last resort.
 
 use std::borrow::Cow;
 
@@ -22,7 +22,8 @@ pub const MAX_TEXT_BYTES: usize = 512 << 20;
 
 /// The text in some bytes, without its byte order mark.
 ///
-/// UTF-8 is used unchanged; UTF-16 is recognised by its byte order mark. Anything else is read as
+/// UTF-8 is used unchanged; UTF-16 is recognised by its byte order mark, or by the zeros between its first
+/// letters. Anything else is read as
 /// Latin-1, in which every byte is a character, with the warning `text/encoding`.
 ///
 /// # Errors
@@ -42,6 +43,12 @@ pub fn decode(bytes: &[u8]) -> Result<Read<Cow<'_, str>>, Error> {
     }
     if let Some(rest) = bytes.strip_prefix(b"\xfe\xff") {
         return Ok(utf16(rest, u16::from_be_bytes));
+    }
+    if let Some(unit) = unmarked_utf16(bytes) {
+        let mut read = utf16(bytes, unit);
+        let said = Diagnostic::note("text/encoding", "UTF-16 without a byte order mark");
+        read.warnings.insert(0, said.with_help("recognised by the zeros between letters"));
+        return Ok(read);
     }
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     match std::str::from_utf8(bytes) {
@@ -65,6 +72,22 @@ pub(crate) fn check_size(bytes: usize) -> Result<(), Error> {
     }
     Err(Error::new("text/size", format!("the text has {bytes} bytes"))
         .with_help(format!("at most {MAX_TEXT_BYTES} bytes are read; split the file")))
+}
+
+/// How the units of UTF-16 without a byte order mark are made of bytes: one of the two is zero in each of
+/// the first letters, which are ASCII in every format.
+fn unmarked_utf16(bytes: &[u8]) -> Option<fn([u8; 2]) -> u16> {
+    let pairs = bytes.get(..bytes.len().min(64) / 2 * 2)?.as_chunks::<2>().0;
+    let letter = |b: u8| (b' '..=b'~').contains(&b) || b"\t\r\n".contains(&b);
+    if pairs.len() < 4 {
+        None
+    } else if pairs.iter().all(|&[a, b]| a == 0 && letter(b)) {
+        Some(u16::from_be_bytes)
+    } else if pairs.iter().all(|&[a, b]| letter(a) && b == 0) {
+        Some(u16::from_le_bytes)
+    } else {
+        None
+    }
 }
 
 fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Read<Cow<'_, str>> {
@@ -108,6 +131,17 @@ mod tests {
         assert_eq!(decode(b"\xef\xbb\xbfab").unwrap().value, "ab");
         assert_eq!(decode(b"\xff\xfea\0b\0").unwrap().value, "ab");
         assert_eq!(decode(b"\xfe\xff\0a\0b").unwrap().value, "ab");
+    }
+
+    #[test]
+    fn zeros_between_letters_tell_utf_16() {
+        for order in [u16::to_be_bytes as fn(u16) -> [u8; 2], u16::to_le_bytes] {
+            let ascii: Vec<u8> = "time\ta\n".repeat(6).encode_utf16().flat_map(order).collect();
+            let read = decode(&ascii).unwrap();
+            assert_eq!(read.value, "time\ta\n".repeat(6));
+            assert!(read.warned("text/encoding"));
+        }
+        assert_eq!(decode(b"a\0b\0").unwrap().value, "a\0b\0");
     }
 
     #[test]

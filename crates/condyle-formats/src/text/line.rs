@@ -2,6 +2,9 @@
 
 use condyle_diagnostics::Place;
 
+/// What stands behind the last line of some files: NUL, and the end-of-file sign of DOS.
+const PADDING: [char; 2] = ['\0', '\u{1a}'];
+
 /// One line without its end.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Line<'a> {
@@ -29,8 +32,9 @@ impl<'a> Line<'a> {
         Place { line: self.number, column: 0, byte: Some(self.start as u64) }
     }
 
+    /// Whether there is nothing but space and what old programs pad files with.
     pub(crate) fn is_blank(&self) -> bool {
-        self.text.trim().is_empty()
+        self.text.trim_matches(|c: char| c.is_whitespace() || PADDING.contains(&c)).is_empty()
     }
 }
 
@@ -39,8 +43,9 @@ pub(crate) fn column_at(line: &str, offset: usize) -> usize {
     line.get(..offset).map_or(0, |before| before.chars().count() + 1)
 }
 
-/// The lines of a text, without a leading byte order mark.
+/// The lines of a text, without a leading byte order mark and padding at its end.
 pub(crate) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> + Clone {
+    let text = text.trim_end_matches(PADDING);
     let bom = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
     let mut start = bom;
     let mut number = 0;
@@ -77,6 +82,8 @@ mod tests {
         assert_eq!(found, [(1, 3, "a"), (2, 6, "b"), (3, 8, "c"), (4, 10, ""), (5, 11, "d")]);
         assert_eq!(lines("").count(), 0);
         assert_eq!(lines("a\n").count(), 1);
+        assert_eq!(lines("a\nb\u{1a}\0\0").last().unwrap().text, "b");
+        assert!(lines("a\n\u{1a}\n").last().unwrap().is_blank());
         assert_eq!(last_line("a\r\nb\n \n"), Place::at_line(2));
         assert_eq!(last_line(" "), Place::at_line(1));
     }

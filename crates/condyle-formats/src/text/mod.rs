@@ -2,6 +2,7 @@
 
 mod decode;
 mod line;
+mod names;
 mod number;
 
 pub use decode::{MAX_TEXT_BYTES, decode, utf8};
@@ -9,5 +10,6 @@ pub(crate) use decode::{check_size, read_decoded};
 #[cfg(feature = "opensim")]
 pub(crate) use line::column_at;
 pub(crate) use line::{Line, last_line, lines};
-pub use number::number;
-pub(crate) use number::{decimal, plain};
+pub(crate) use names::distinct;
+pub use number::{cell, number};
+pub(crate) use number::{decimal, plain, unquoted, with_comma};

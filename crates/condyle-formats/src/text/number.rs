@@ -35,6 +35,78 @@ pub fn number(text: &str) -> Option<f64> {
     }
 }
 
+/// Words that tables hold where a value is missing, in lower case.
+const MISSING: [&str; 22] = [
+    "na",
+    "n/a",
+    "#n/a",
+    "#na",
+    "n.a.",
+    "nan(snan)",
+    "none",
+    "null",
+    "(null)",
+    "nil",
+    "missing",
+    "undefined",
+    "<na>",
+    "-",
+    "--",
+    "---",
+    "*",
+    "**",
+    "***",
+    "?",
+    ".",
+    "qnan",
+];
+
+/// The number in a cell of a table; NaN where a word or a sign says that it is missing.
+///
+/// Beside what [`number`] reads: cells in quotes, the exponents of Fortran (`1.5D+03`), and `NA`, `N/A`,
+/// `null`, `none`, `-`, `--`, `*` and their like. None if it is none of these.
+///
+/// ```
+/// use condyle_formats::text::cell;
+/// assert_eq!(cell("1.5D+03"), Some(1500.0));
+/// assert_eq!(cell("\"-2\""), Some(-2.0));
+/// assert!(cell("N/A").is_some_and(f64::is_nan));
+/// assert_eq!(cell("abc"), None);
+/// ```
+#[must_use]
+pub fn cell(text: &str) -> Option<f64> {
+    if let Some(value) = number(text) {
+        return Some(value);
+    }
+    let text = unquoted(text);
+    if text.len() > 64 || !text.is_ascii() {
+        return None;
+    }
+    let lower = text.to_ascii_lowercase();
+    let word = lower.trim_start_matches(['+', '-']);
+    if MISSING.contains(&lower.as_str()) || (word != lower && word == "qnan") {
+        return Some(f64::NAN);
+    }
+    number(text).or_else(|| {
+        let fortran = lower.bytes().filter(|b| *b == b'd').count() == 1
+            && lower.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+        fortran.then(|| number(&lower.replace('d', "e"))).flatten()
+    })
+}
+
+/// The number in a cell whose decimal separator is a comma; None of any other cell.
+pub(crate) fn with_comma(text: &str) -> Option<f64> {
+    let single = text.bytes().filter(|b| *b == b',').count() == 1 && !text.contains('.');
+    single.then(|| cell(&text.replace(',', "."))).flatten().filter(|value| !value.is_nan())
+}
+
+/// A cell without the quotes around it.
+pub(crate) fn unquoted(text: &str) -> &str {
+    let text = text.trim();
+    let inner = ['"', '\''].iter().find_map(|&q| text.strip_prefix(q)?.strip_suffix(q));
+    inner.map_or(text, str::trim)
+}
+
 /// The shortest decimal that reads back as the same number; an exponent only for the very small
 /// and the very large.
 pub(crate) fn decimal(value: f64) -> String {
@@ -73,6 +145,26 @@ mod tests {
         }
         assert_eq!(number("1."), Some(1.0));
         assert_eq!(number(".5"), Some(0.5));
+    }
+
+    #[test]
+    fn cells_of_tables() {
+        for missing in
+            ["NA", "N/A", "null", "None", "-", "--", "*", "-QNAN", "1.#QNAN", "nan", "\"NA\""]
+        {
+            assert!(cell(missing).is_some_and(f64::is_nan), "{missing}");
+            assert_eq!(with_comma(missing), None, "{missing}");
+        }
+        for (text, value) in [("0.5D-01", 0.05), ("-1d2", -100.0), ("'7'", 7.0)] {
+            assert_eq!(cell(text), Some(value), "{text}");
+        }
+        for no in ["", "abc", "d", "1d2d3", "0x1d", "--1", "1,5", "deadd"] {
+            assert_eq!(cell(no), None, "{no}");
+        }
+        assert_eq!(with_comma("-0,25"), Some(-0.25));
+        for no in ["1,000,000", "1.000,5", "1.5", ",", "a,b"] {
+            assert_eq!(with_comma(no), None, "{no}");
+        }
     }
 
     #[test]

@@ -1,16 +1,10 @@
 //! Reading: rows, units and times.
 
 use super::header::{self, Delimiter, Header};
-use crate::text::{Line, check_size, last_line, lines, number, read_decoded};
+use super::layout::{Layout, median_step};
+use crate::text::{Line, cell, check_size, last_line, lines, read_decoded, with_comma};
 use condyle_diagnostics::{Diagnostic, Error, Place, Read, Warnings};
 use condyle_motion::{LengthUnit, Observed, Recording};
-
-/// Options that a TRC file itself cannot state.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Dialect {
-    /// Whether a marker at exactly `0 0 0` was not seen.
-    pub zero_is_missing: bool,
-}
 
 /// Reads a recording from text; see [the module](super) for what is accepted.
 ///
@@ -18,7 +12,8 @@ pub struct Dialect {
 ///
 /// `trc/empty`, `trc/not-trc`, `trc/truncated`, `trc/keys`, `trc/labels`, `trc/no-rows`,
 /// `trc/cell` (a cell that is not a number, with line and column), `trc/too-many-cells`,
-/// `trc/short-rows`, `trc/time`.
+/// `trc/short-rows`, `trc/time`, `trc/rate` (times that contradict the rate), `trc/unit` (none is stated,
+/// and the size of the data does not tell it).
 ///
 /// ```
 /// let text = "PathFileType\t4\t(X/Y/Z)\twalk.trc
@@ -36,41 +31,30 @@ pub struct Dialect {
 /// # Ok::<(), condyle_formats::Error>(())
 /// ```
 pub fn read(text: &str) -> Result<Read<Recording>, Error> {
-    read_with(text, Dialect::default())
-}
-
-/// Reads a recording from bytes in UTF-8, UTF-16 or, as a last resort, Latin-1.
-///
-/// # Errors
-///
-/// As [`read`].
-pub fn from_bytes(bytes: &[u8]) -> Result<Read<Recording>, Error> {
-    read_decoded(bytes, read)
-}
-
-/// Reads a recording with options.
-///
-/// # Errors
-///
-/// As [`read`].
-pub fn read_with(text: &str, options: Dialect) -> Result<Read<Recording>, Error> {
     check_size(text.len())?;
     let mut warnings = Warnings::default();
     let mut lines = lines(text).peekable();
     let header = header::read(&mut lines, &mut warnings)?;
+    let layout = Layout::find(&header, lines.clone(), &mut warnings);
     let mut rows = Rows {
         header: &header,
-        options,
+        layout,
         // Every marker in a row takes three separators; only rows that end early take fewer.
         room: text.len() + 100_000,
-        nameless: None,
+        nameless: 0,
+        decimal_commas: false,
+        frame_span: [f64::NAN; 2],
         times: Vec::new(),
         positions: Vec::new(),
     };
     for line in lines.filter(|line| !line.is_blank()) {
         rows.add(line, &mut warnings)?;
     }
-    let Rows { times, mut positions, .. } = rows;
+    if rows.decimal_commas {
+        let said = Diagnostic::warning("trc/decimal-comma", "the decimal separator is a comma");
+        warnings.push(said.at(header.values));
+    }
+    let Rows { times, mut positions, frame_span, .. } = rows;
     if times.is_empty() {
         return Err(Error::new("trc/no-rows", "there are marker names, but no frames")
             .at(last_line(text))
@@ -88,51 +72,61 @@ pub fn read_with(text: &str, options: Dialect) -> Result<Read<Recording>, Error>
             .with_help("the rows are used"),
         );
     }
-    let rate = rate(header.rate, &times, &mut warnings);
+    let rate = rate(&header, &times, frame_span, &mut warnings)?;
     let labels = header.labels;
     let mut recording =
         Recording { labels, rate, times, positions: Vec::new(), units: LengthUnit::Metre };
     recording.positions = std::mem::take(&mut positions);
-    convert(&mut recording, header.unit, header.values, &mut warnings);
+    convert(&mut recording, header.unit, header.values, &mut warnings)?;
     Ok(Read { value: recording, warnings: warnings.finish() })
+}
+
+/// Reads a recording from bytes in UTF-8, UTF-16 or, as a last resort, Latin-1.
+///
+/// # Errors
+///
+/// As [`read`].
+pub fn from_bytes(bytes: &[u8]) -> Result<Read<Recording>, Error> {
+    read_decoded(bytes, read)
 }
 
 /// The rows read so far, in the unit of the file.
 struct Rows<'h> {
     header: &'h Header,
-    options: Dialect,
+    layout: Layout,
     /// How many positions the size of the text allows for.
     room: usize,
-    /// Cells of markers without a name, after all others; found in the first row.
-    nameless: Option<usize>,
+    /// Cells of markers without a name, after all others, as far as rows had them.
+    nameless: usize,
+    /// Whether a comma was a decimal separator.
+    decimal_commas: bool,
+    /// The numbers of the first and the last frame.
+    frame_span: [f64; 2],
     times: Vec<f64>,
     positions: Vec<Observed>,
 }
 
 impl Rows<'_> {
     fn add(&mut self, line: Line<'_>, warnings: &mut Warnings) -> Result<(), Error> {
-        let delimiter = Delimiter::of(line.text);
+        let delimiter = self.header.delimiter.unwrap_or_else(|| Delimiter::of(line.text));
         let mut cells = delimiter.cells(line.text);
-        let complete = cells.len() >= 2 + 3 * self.header.labels.len();
+        let markers = self.header.labels.len();
+        let expected = self.layout.first + 3 * markers;
+        let complete = cells.len() >= expected;
         while cells.last().is_some_and(|cell| cell.is_empty()) {
             cells.pop();
         }
-        let markers = self.header.labels.len();
-        let expected = 2 + 3 * markers;
         let surplus = cells.len().saturating_sub(expected);
-        let nameless = *self.nameless.get_or_insert_with(|| {
-            let nameless = if surplus.is_multiple_of(3) { surplus } else { 0 };
-            if nameless > 0 {
-                warnings.add("trc/nameless", || {
-                    let count = nameless / 3;
-                    let markers = format!("markers without a name in the rows: {count}");
-                    Diagnostic::warning("trc/nameless", markers)
-                        .at(line.place_of(cells[expected]))
-                        .with_help("those after the last name were skipped")
-                });
-            }
-            nameless
-        });
+        if surplus > self.nameless && surplus.is_multiple_of(3) {
+            self.nameless = surplus;
+            warnings.add("trc/nameless", || {
+                let message = format!("markers without a name in the rows: {}", surplus / 3);
+                Diagnostic::warning("trc/nameless", message)
+                    .at(line.place_of(cells[expected]))
+                    .with_help("those after the last name were skipped")
+            });
+        }
+        let nameless = self.nameless;
         if surplus > nameless {
             return Err(Error::new("trc/too-many-cells", "the row has too many cells")
                 .at(line.place_of(cells[expected + nameless]))
@@ -142,15 +136,16 @@ impl Rows<'_> {
                     cells.len()
                 )));
         }
-        let cell = |index: usize| cells.get(index).copied().unwrap_or_default();
-        let time = self.time(line, cell(0), cell(1), warnings)?;
+        let at = |index: usize| cells.get(index).copied().unwrap_or_default();
+        let frame = self.layout.time.checked_sub(1).map_or("", at);
+        let time = self.time(line, frame, at(self.layout.time), warnings)?;
         if self.positions.len() + markers > self.room {
             return Err(Error::new("trc/short-rows", "most rows end long before the last marker")
                 .at(line.place())
                 .with_help(format!("{markers} markers are named; are the rows complete?")));
         }
         if !complete {
-            let unseen = markers - cells.len().saturating_sub(2) / 3;
+            let unseen = markers - cells.len().saturating_sub(self.layout.first) / 3;
             if delimiter == Delimiter::Space {
                 warnings.add("trc/space-gaps", || {
                     Diagnostic::warning("trc/space-gaps", "a row without tabs has too few cells")
@@ -177,24 +172,43 @@ impl Rows<'_> {
         Ok(())
     }
 
+    /// The number in a cell.
+    fn number(&mut self, text: &str) -> Option<f64> {
+        let plain = cell(text);
+        if plain.is_some() || self.header.delimiter == Some(Delimiter::Comma) {
+            return plain;
+        }
+        let value = with_comma(text)?;
+        self.decimal_commas = true;
+        Some(value)
+    }
+
     fn time(
-        &self,
+        &mut self,
         line: Line<'_>,
         frame: &str,
         time: &str,
         warnings: &mut Warnings,
     ) -> Result<f64, Error> {
-        if !frame.is_empty() && number(frame).is_none() {
-            return Err(not_a_number(line, frame, "the frame's number"));
+        if !frame.is_empty() {
+            let number = self.number(frame);
+            let number = number.ok_or_else(|| not_a_number(line, frame, "the frame's number"))?;
+            let [first, last] = &mut self.frame_span;
+            *first = if first.is_nan() { number } else { *first };
+            *last = number;
         }
         let seconds = if time.is_empty() { None } else { Some(time) };
-        let seconds = match seconds.map(|cell| (cell, number(cell))) {
+        let seconds = match seconds.map(|cell| (cell, self.number(cell))) {
             Some((_, Some(seconds))) if seconds.is_finite() => seconds,
             Some((cell, None)) => return Err(not_a_number(line, cell, "the frame's time")),
             _ => {
                 return Err(Error::new("trc/time", "the row has no time")
                     .at(line.place())
-                    .with_help("write the seconds in the second cell"));
+                    .with_help(if self.layout.time == 1 {
+                        "write the seconds in the second cell"
+                    } else {
+                        "write the seconds under `Time`"
+                    }));
             }
         };
         match self.times.last() {
@@ -215,7 +229,7 @@ impl Rows<'_> {
     }
 
     fn position(
-        &self,
+        &mut self,
         line: Line<'_>,
         cells: &[&str],
         marker: usize,
@@ -224,10 +238,10 @@ impl Rows<'_> {
         let mut position = [f64::NAN; 3];
         let mut blank = 0;
         for (axis, coordinate) in position.iter_mut().enumerate() {
-            match cells.get(2 + 3 * marker + axis).filter(|cell| !cell.is_empty()) {
+            match cells.get(self.layout.first + 3 * marker + axis).filter(|cell| !cell.is_empty()) {
                 None => blank += 1,
                 Some(cell) => {
-                    *coordinate = number(cell).ok_or_else(|| {
+                    *coordinate = self.number(cell).ok_or_else(|| {
                         let label = self.header.labels.get(marker);
                         let label = label.map_or("", String::as_str);
                         not_a_number(line, cell, &format!("a coordinate of `{label}`"))
@@ -243,64 +257,97 @@ impl Rows<'_> {
                     .with_help("the marker is taken as missing")
             });
         }
-        let seen = position.iter().all(|x| x.is_finite())
-            && !(self.options.zero_is_missing && position == [0.0; 3]);
+        let seen = position.iter().all(|x| x.is_finite());
         Ok(seen.then_some(position))
     }
 }
 
 fn not_a_number(line: Line<'_>, cell: &str, what: &str) -> Error {
-    let help = if cell.contains(',') && number(&cell.replace(',', ".")).is_some() {
-        format!("write {}: the decimal separator is a point", cell.replace(',', "."))
-    } else {
-        format!("expected {what}; a missing value is a blank cell")
-    };
+    let help = format!("expected {what}; a missing value is a blank cell");
     let clipped: String = cell.chars().take(40).collect();
     Error::new("trc/cell", format!("`{clipped}` is not a number"))
         .at(line.place_of(cell))
         .with_help(help)
 }
 
-/// The rate of the header, or of the times where it has none; a warning where they disagree.
-fn rate(declared: Option<f64>, times: &[f64], warnings: &mut Warnings) -> f64 {
-    let span = match times {
-        [first, .., last] => last - first,
-        _ => 0.0,
+/// The rate of the header; that of the times where it has none, or where they disagree, with a warning.
+///
+/// # Errors
+/// Where times and rate are ten times apart or more and the numbers of frames do not explain it, as where
+/// times are frames or milliseconds; where time stands still.
+fn rate(
+    header: &Header,
+    times: &[f64],
+    [first, last]: [f64; 2],
+    warnings: &mut Warnings,
+) -> Result<f64, Error> {
+    let Some(step) = median_step(times) else {
+        if let (Some(time), true) = (times.first(), times.len() > 2) {
+            let message = format!("all {} rows have the time {time} s", times.len());
+            let error = Error::new("trc/time", message).at(header.values);
+            return Err(error.with_help("write the seconds of each row under `Time`"));
+        }
+        return Ok(header.rate.unwrap_or(0.0));
     };
-    let measured = (span > 0.0 && span.is_finite()).then(|| (times.len() - 1) as f64 / span);
-    if let (Some(declared), Some(measured)) = (declared, measured)
-        && !(0.95..1.05).contains(&(declared / measured))
-    {
-        warnings.push(
-            Diagnostic::warning(
-                "trc/rate",
-                format!("DataRate is {declared} Hz, but the times give {measured:.3} Hz"),
-            )
-            .with_help("the times are used"),
-        );
+    // Of the whole trial: more digits than a step has.
+    let span = times.last().unwrap_or(&0.0) - times.first().unwrap_or(&0.0);
+    let mean = (times.len() - 1) as f64 / span;
+    let measured = if (0.9..1.1).contains(&(mean * step)) { mean } else { 1.0 / step };
+    let Some(declared) = header.rate else { return Ok(measured) };
+    let ratio = declared * step;
+    let per_row = (last - first) / (times.len() - 1) as f64;
+    if (0.95..1.05).contains(&ratio) {
+        return Ok(declared);
     }
-    declared.or(measured).unwrap_or(0.0)
+    if per_row > 1.0 && (0.95..1.05).contains(&(ratio / per_row)) {
+        // Every so many frames only.
+        return Ok(measured);
+    }
+    let message = format!("DataRate is {declared} Hz, but the times give {measured:.3} Hz");
+    let other = header.other_rates.iter().find(|rate| (0.95..1.05).contains(&(**rate * step)));
+    if other.is_none() && !(0.1..10.0).contains(&ratio) {
+        let like = match (step, ratio) {
+            (1.0, _) => "they look like the numbers of frames",
+            (_, r) if (950.0..1050.0).contains(&r) => "they look like milliseconds",
+            (_, r) if (0.95e6..1.05e6).contains(&r) => "they look like microseconds",
+            _ => "which of the two is right?",
+        };
+        let error = Error::new("trc/rate", message).at(header.values);
+        return Err(error.with_help(format!("{like}: write seconds, or the rate that is meant")));
+    }
+    let help = match other {
+        Some(_) => "the times are used: they have another of the header's rates",
+        None => "the times are used",
+    };
+    warnings.push(Diagnostic::warning("trc/rate", message).with_help(help));
+    Ok(measured)
 }
 
 /// Converts positions to metres, with a guessed unit where the file states none.
+///
+/// # Errors
+/// Where the unit is not stated and the size does not tell it.
 fn convert(
     recording: &mut Recording,
     unit: Option<LengthUnit>,
     header: Place,
     warnings: &mut Warnings,
-) {
-    let unit = unit.unwrap_or_else(|| {
-        // A person's markers span 1 to 3 m, one arm's half a metre.
-        let size = recording.extent().unwrap_or_else(|| recording.reach());
-        let unit = match size {
-            size if size > 250.0 => LengthUnit::Millimetre,
-            size if size > 10.0 => LengthUnit::Centimetre,
-            _ => LengthUnit::Metre,
-        };
-        let message = format!("the markers span {size:.4} units, taken as {}", unit.name());
-        warnings.push(Diagnostic::warning("trc/unit", message).at(header));
-        unit
-    });
+) -> Result<(), Error> {
+    let unit = match unit {
+        Some(unit) => unit,
+        None => {
+            let size = recording.extent().unwrap_or_else(|| recording.reach());
+            let unit = recording.unit_by_size().ok_or_else(|| {
+                let message =
+                    format!("there is no unit of length, and a span of {size:.4} does not tell it");
+                let help = "it may be a body in cm or a hand in mm: write the unit under `Units`";
+                Error::new("trc/unit", message).at(header).with_help(help)
+            })?;
+            let message = format!("the markers span {size:.4} units, taken as {}", unit.name());
+            warnings.push(Diagnostic::warning("trc/unit", message).at(header));
+            unit
+        }
+    };
     for position in recording.positions.iter_mut().filter_map(Observed::position_mut) {
         *position = position.map(|x| unit.to_metres(x));
     }
@@ -321,4 +368,5 @@ fn convert(
                 .with_help(format!("is the unit `{}` right?", unit.name())),
         );
     }
+    Ok(())
 }

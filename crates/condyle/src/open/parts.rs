@@ -5,11 +5,12 @@
 //! where no part gives rise to a warning of its own; where one does, the file is read as a whole.
 
 use super::{Cause, OpenError, ending, failed};
-use condyle_diagnostics::{Diagnostic, Read};
+use condyle_diagnostics::{Diagnostic, Read, Severity};
 use condyle_formats::text::number;
 use condyle_formats::{Content, ContentKind, Format, Id};
 use condyle_model::Model;
-use condyle_motion::{Motion, Recording, Table};
+use condyle_motion::columns::check_single;
+use condyle_motion::{AngleUnit, Motion, Recording};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -253,12 +254,21 @@ pub fn motion_parts<'m>(
 ) -> Result<Option<Read<MotionParts<'m>>>, OpenError> {
     let Some(mut parts) = Parts::open(path) else { return Ok(None) };
     let mut warnings: Option<Vec<Diagnostic>> = None;
+    let mut guessed = false;
     let start = parts.reader.stream_position().map_err(|e| failed(path, Cause::Io(e)))?;
     while let Some(part) = parts.next() {
         // Reading the whole says where in the file the error is.
         let Ok((read, known)) = part else { return Ok(None) };
-        let stated = matches!(&read.value, Content::Table(Table { angle_unit, .. })
-            if *angle_unit != condyle_motion::AngleUnit::Unstated);
+        let stated = matches!(&read.value, Content::Table(table) if check_single(model, table).is_ok()
+        && match table.angle_unit {
+            AngleUnit::Degrees | AngleUnit::Radians => true,
+            AngleUnit::RadiansAsRule => {
+                let said = table.clone().settle_angles(Some(model), None);
+                guessed |= said.as_ref().is_ok_and(|said| !said.is_empty());
+                said.is_ok_and(|said| said.iter().all(|s| s.severity == Severity::Note))
+            }
+            AngleUnit::Unstated => false,
+        });
         let read = part_of_motion(model, read, known);
         let like_the_first = warnings.get_or_insert_with(|| read.warnings.clone());
         if !stated || !same(like_the_first, &read.warnings) || read.warned(condyle_motion::BLANK) {
@@ -273,7 +283,12 @@ pub fn motion_parts<'m>(
     let back = parts.reader.seek(SeekFrom::Start(start));
     back.map_err(|error| failed(path, Cause::Io(error)))?;
     let value = MotionParts { model, parts, frames };
-    Ok(Some(Read { value, warnings: warnings.unwrap_or_default() }))
+    let mut warnings = warnings.unwrap_or_default();
+    if guessed {
+        let message = "the unit of angles is not stated: taken as radians, as in all CSV";
+        warnings.push(Diagnostic::note("motion/angle-unit", message));
+    }
+    Ok(Some(Read { value, warnings }))
 }
 
 /// A long recording of which every part reads without a warning; `None` of any other.

@@ -47,7 +47,7 @@ impl<'a> Job<'a> {
     /// Matches a recording to a model, and prepares what is asked.
     ///
     /// # Errors
-    /// `track/no-common-markers` if model and recording have no marker of positive weight in common,
+    /// Those of [`match_markers`]; `track/no-common-markers` if model and recording have no marker of positive weight in common,
     /// `track/no-frames` if no frame lies in the time range, `track/weight`, `track/posture` and
     /// `track/unknown-marker` if the request asks for what cannot be.
     pub fn new(
@@ -60,7 +60,7 @@ impl<'a> Job<'a> {
         let weights = request.weights_of(&model)?;
         let mut warnings = vec![];
         let renamed = request.renamed(&model, &recording.labels, &mut warnings);
-        let (matches, guesses) = match_markers(&model, &renamed);
+        let (matches, guesses) = match_markers(&model, &renamed, request.subject.as_deref())?;
         warnings.extend(guesses);
         if let Some(weights) = &request.marker_weights {
             let names = |found: &Match| model.markers()[found.marker].name.clone();

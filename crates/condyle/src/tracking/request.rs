@@ -17,6 +17,8 @@ pub struct Request {
     /// What labels of the recording are called in the model, the likeliest first; of these names the
     /// first that the model has is taken.
     pub names: Vec<(String, Vec<String>)>,
+    /// Whose markers are meant, where the labels of several people differ by a prefix.
+    pub subject: Option<String>,
     /// Coordinates that should have a value.
     pub coordinates: Vec<CoordinateRequest>,
     /// Coordinates, or sums of several, that are held near a rest value.
@@ -78,6 +80,7 @@ impl Default for Request {
             marker_weights: None,
             weights: vec![],
             names: vec![],
+            subject: None,
             coordinates: vec![],
             postures: vec![],
             coordinate_values: None,
@@ -164,11 +167,14 @@ impl Request {
         let known = |name: &&String| model.markers().iter().any(|marker| marker.name == **name);
         let renamed = |label: &String| {
             let bare = label.rsplit(':').next().unwrap_or(label);
-            let entry = self.names.iter().find(|(from, _)| from == label);
-            let entry = entry.or_else(|| self.names.iter().find(|(from, _)| from == bare));
-            let Some((_, names)) = entry else { return label.clone() };
+            let entry = self.names.iter().find(|(from, _)| from == label).map(|entry| ("", entry));
+            // The prefix stays: it tells whose marker it is.
+            let prefix = label.strip_suffix(bare).unwrap_or_default();
+            let other = || self.names.iter().find(|(from, _)| from == bare);
+            let entry = entry.or_else(|| other().map(|entry| (prefix, entry)));
+            let Some((prefix, (_, names))) = entry else { return label.clone() };
             match (names.iter().find(known), &names[..]) {
-                (Some(name), _) => name.clone(),
+                (Some(name), _) => format!("{prefix}{name}"),
                 (None, [only]) => {
                     let names = model.markers().iter().map(|marker| marker.name.as_str());
                     let message =
@@ -195,7 +201,15 @@ impl Request {
         warnings: &mut Vec<Diagnostic>,
     ) {
         let file = self.coordinate_values.as_ref().map(|table| {
-            let (motion, said) = Motion::from_table(model, table);
+            let mut settled = table.clone();
+            match settled.settle_angles(Some(model), None) {
+                Ok(said) => warnings.extend(said),
+                Err(error) => warnings.extend(error.into_diagnostics().into_iter().map(|said| {
+                    let help = "radians are assumed, as OpenSim does";
+                    Diagnostic::warning(said.code, said.message).with_help(help)
+                })),
+            }
+            let (motion, said) = Motion::from_table(model, &settled);
             warnings.extend(said.into_iter().filter(|d| d.code == BLANK));
             (motion, table)
         });

@@ -45,7 +45,7 @@ pub(super) fn to_json(recording: &Recording) -> Value {
             })
         })
         .collect();
-    json!({
+    let mut whole = json!({
         "kind": "recording",
         "frames": recording.frames(),
         "rate": recording.rate,
@@ -53,7 +53,13 @@ pub(super) fn to_json(recording: &Recording) -> Value {
         "time": [recording.times.first(), recording.times.last()],
         "unit": recording.units.name(),
         "markers": markers,
-    })
+    });
+    let subjects = recording.subjects();
+    if !subjects.is_empty() {
+        let names = subjects.iter().map(|(name, count)| json!({ "name": name, "markers": count }));
+        whole["subjects"] = names.collect();
+    }
+    whole
 }
 
 pub(super) fn to_text(recording: &Recording) -> String {
@@ -67,6 +73,15 @@ pub(super) fn to_text(recording: &Recording) -> String {
     );
     let names: Vec<&str> = recording.labels.iter().map(String::as_str).collect();
     text.push_str(&wrapped(&format!("markers ({}):", names.len()), &names));
+    let subjects: Vec<String> = recording
+        .subjects()
+        .iter()
+        .map(|(name, count)| format!("{name} ({count} markers)"))
+        .collect();
+    if !subjects.is_empty() {
+        let subjects: Vec<&str> = subjects.iter().map(String::as_str).collect();
+        text.push_str(&wrapped("subjects:", &subjects));
+    }
     let frames = recording.frames().max(1) as f64;
     let mut rows = vec![];
     for (name, missing) in names.iter().zip(missing(recording)) {

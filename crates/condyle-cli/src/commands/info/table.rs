@@ -11,7 +11,7 @@ fn unit(table: &Table) -> &'static str {
     match table.angle_unit {
         AngleUnit::Degrees => "degrees",
         AngleUnit::Radians => "radians",
-        AngleUnit::Unstated => "unstated",
+        AngleUnit::RadiansAsRule | AngleUnit::Unstated => "unstated",
     }
 }
 
@@ -38,7 +38,7 @@ pub(super) fn to_json(table: &Table) -> Value {
 pub(super) fn to_text(table: &Table) -> String {
     let mut text = "table over time\n".to_owned();
     let angles = match table.angle_unit {
-        AngleUnit::Unstated => "unit of angles not stated: taken as radians".to_owned(),
+        AngleUnit::RadiansAsRule | AngleUnit::Unstated => "unit of angles not stated".to_owned(),
         _ => format!("angles in {}", unit(table)),
     };
     let span = match table.times[..] {

@@ -3,16 +3,22 @@
 
 use super::places::Places;
 use crate::digest::{Digest, of_file};
-use condyle::Model;
 use condyle::formats::{Format, document};
 use condyle::tracking::Request;
+use condyle::{Model, Zeros};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The part of the digest that all recordings of a run share: the program, the model with all that it
 /// includes, and everything asked that changes a result.
-pub(super) fn of_run(path: &Path, model: &Model, request: &Request, format: &Format) -> Digest {
+pub(super) fn of_run(
+    path: &Path,
+    model: &Model,
+    request: &Request,
+    zeros: Zeros,
+    format: &Format,
+) -> Digest {
     let mut digest = Digest::default();
     digest.add("program", env!("CARGO_PKG_VERSION").as_bytes());
     digest.add("model file", of_file(path).unwrap_or_default().as_bytes());
@@ -23,6 +29,7 @@ pub(super) fn of_run(path: &Path, model: &Model, request: &Request, format: &For
     let others = Request { marker_weights: None, threads: None, ..request.clone() };
     digest.add("weights", format!("{weights:?}").as_bytes());
     digest.add("asked", format!("{others:?}").as_bytes());
+    digest.add("zeros", format!("{zeros:?}").as_bytes());
     digest.add("format", format.name.as_bytes());
     digest
 }

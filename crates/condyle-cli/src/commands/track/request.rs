@@ -1,6 +1,6 @@
 //! What is asked of a tracking: a setup, and the arguments that win over it.
 
-use crate::commands::Limits;
+use crate::commands::{Limits, ZerosArgument};
 use crate::failure::{Failure, warned};
 use clap::Args;
 use condyle::tracking::{PostureRequest, Request};
@@ -24,6 +24,12 @@ pub(super) struct Asked {
     /// table (cmu, gait2392, isb, opencap, plug-in-gait).
     #[arg(long, value_name = "TABLE")]
     names: Option<PathBuf>,
+    /// Whose markers are meant, where the labels of several people begin with their names: `Anna:RFHD`.
+    #[arg(long, value_name = "NAME")]
+    subject: Option<String>,
+    /// What a marker at exactly 0 0 0 is; without it, it is missing where it is elsewhere in other frames.
+    #[arg(long, value_enum)]
+    pub(super) zeros: Option<ZerosArgument>,
     /// Hold a coordinate near its default with a stiffness in m²/rad² (or per m²), such as
     /// `lumbar_bending=1e-5`; repeatable.
     #[arg(long, value_name = "COORD=STIFFNESS", value_parser = named)]
@@ -56,6 +62,9 @@ impl Asked {
         }
         if let Some(path) = &self.names {
             request.names = warned(path, open::names(path)?);
+        }
+        if self.subject.is_some() {
+            request.subject.clone_from(&self.subject);
         }
         for (name, stiffness) in &self.hold {
             model.find_coordinate(name)?;

@@ -1,0 +1,153 @@
+//! The unit of angles that a table does not state.
+
+use crate::columns::cells;
+use crate::{AngleUnit, Table};
+use condyle_diagnostics::{Diagnostic, Error};
+use condyle_model::{CoordinateKind, Model};
+use std::f64::consts::PI;
+
+/// How a unit is stated.
+const HELP: &str = "state it: `--angles deg` or `--angles rad`, or a line `inDegrees=yes` or `inDegrees=no` in the header";
+
+/// Values beyond a range by more than this, in radians, are no angle of that joint.
+const BEYOND: f64 = 1.0;
+
+/// The largest angle of a table, where it is, and whether joints can have such angles in radians.
+struct Largest {
+    size: f64,
+    column: usize,
+    time: f64,
+    /// Whether one of the angles, if in radians, is far beyond the range of its coordinate.
+    beyond: bool,
+}
+
+impl Table {
+    /// Decides the unit of rotations where the table does not state it: as it is `told`, else by the size
+    /// of the largest angle A of the table.
+    ///
+    /// ```text
+    /// A > 3π             degrees
+    /// π < A ≤ 3π         degrees, if in radians it were far beyond the ranges; else it cannot be told
+    /// A ≤ π              radians, unless some were far beyond the ranges: then it cannot be told
+    /// ```
+    ///
+    /// A CSV is in radians up to 3π, as this program writes it, which is a note.
+    ///
+    /// Joints turn by less than π, so that in radians more than 3π (540°) does not occur, and between them
+    /// are turns of the whole body in radians as well as small motions in degrees. Of the smallest
+    /// motions radians are assumed, as OpenSim does of all that state no unit; far is 1 rad. With a model
+    /// the angles are the columns of its rotations; without one all columns that are no lengths by
+    /// their names. Every guess is a warning. A table without angles, or with zeros only, stays as it is.
+    ///
+    /// # Errors
+    /// `motion/angle-unit` where it cannot be told.
+    ///
+    /// ```
+    /// use condyle_motion::{AngleUnit, Table};
+    /// let mut table = Table {
+    ///     columns: vec!["knee_angle_r".into()],
+    ///     times: vec![0.0, 0.1],
+    ///     values: vec![5.0, 62.0],
+    ///     ..Table::default()
+    /// };
+    /// assert_eq!(table.settle_angles(None, None)?.len(), 1);
+    /// assert_eq!(table.angle_unit, AngleUnit::Degrees);
+    /// # Ok::<(), condyle_diagnostics::Error>(())
+    /// ```
+    pub fn settle_angles(
+        &mut self,
+        model: Option<&Model>,
+        told: Option<AngleUnit>,
+    ) -> Result<Vec<Diagnostic>, Error> {
+        if let Some(told) = told {
+            let stated = matches!(self.angle_unit, AngleUnit::Degrees | AngleUnit::Radians);
+            let other = stated && self.angle_unit != told;
+            let said = || {
+                let message = format!("the file states {}", self.angle_unit.name());
+                let help = format!("read in {}, as told", told.name());
+                Diagnostic::warning("motion/angle-unit", message).with_help(help)
+            };
+            let said = other.then(said);
+            self.angle_unit = told;
+            return Ok(said.into_iter().collect());
+        }
+        let rule = self.angle_unit == AngleUnit::RadiansAsRule;
+        if !rule && self.angle_unit != AngleUnit::Unstated {
+            return Ok(vec![]);
+        }
+        let Some(largest) = self.largest_angle(model) else { return Ok(vec![]) };
+        let Largest { size, column, time, beyond } = largest;
+        let column = &self.columns[column];
+        let what = format!(
+            "the unit of angles is not stated, and the largest is {size:.4} (`{column}` at {time} s)"
+        );
+        let unit = match (size, beyond) {
+            (size, _) if size > 3.0 * PI => AngleUnit::Degrees,
+            _ if rule => {
+                self.angle_unit = AngleUnit::Radians;
+                let message = "the unit of angles is not stated: taken as radians, as in all CSV";
+                return Ok(vec![Diagnostic::note("motion/angle-unit", message).with_help(HELP)]);
+            }
+            (size, true) if size > PI => AngleUnit::Degrees,
+            (size, false) if size <= PI => AngleUnit::Radians,
+            _ => {
+                let message = format!("{what}, which may be degrees or radians");
+                return Err(Error::new("motion/angle-unit", message).with_help(HELP));
+            }
+        };
+        self.angle_unit = unit;
+        let message = format!("{what}: taken as {}", unit.name());
+        Ok(vec![Diagnostic::warning("motion/angle-unit", message).with_help(HELP)])
+    }
+
+    fn largest_angle(&self, model: Option<&Model>) -> Option<Largest> {
+        // Columns of angles, each with its range.
+        let angles: Vec<(usize, [f64; 2])> = match model {
+            Some(model) => {
+                let turns = cells(model, self).into_iter().filter_map(|cell| {
+                    let coordinate = model.coordinate(cell.coordinate);
+                    let rotation = coordinate.kind == CoordinateKind::Rotation;
+                    let range = [
+                        coordinate.range.lower.unwrap_or(f64::NEG_INFINITY),
+                        coordinate.range.upper.unwrap_or(f64::INFINITY),
+                    ];
+                    Some((cell.column.filter(|_| rotation)?, range))
+                });
+                turns.collect()
+            }
+            None => {
+                let columns = self.columns.iter().enumerate();
+                let angles = columns.filter(|(_, name)| !is_length(name));
+                angles.map(|(column, _)| (column, [f64::NEG_INFINITY, f64::INFINITY])).collect()
+            }
+        };
+        let mut largest: Option<Largest> = None;
+        let mut beyond = false;
+        for (row, &time) in self.times.iter().enumerate() {
+            let values = self.row(row);
+            for &(column, [low, high]) in &angles {
+                let Some(value) = values.get(column).filter(|v| v.is_finite()) else { continue };
+                beyond |= *value < low - BEYOND || *value > high + BEYOND;
+                if value.abs() > largest.as_ref().map_or(0.0, |l| l.size) {
+                    largest = Some(Largest { size: value.abs(), column, time, beyond: false });
+                }
+            }
+        }
+        largest.map(|largest| Largest { beyond, ..largest })
+    }
+}
+
+/// Whether a column holds no angle, by its name: a translation, part of a quaternion, a speed, or a force.
+fn is_length(name: &str) -> bool {
+    let lower = name.to_ascii_lowercase();
+    let bare =
+        lower.strip_suffix("/value").or_else(|| lower.strip_suffix("|value")).unwrap_or(&lower);
+    let endings = [
+        "_tx", "_ty", "_tz", "/tx", "/ty", "/tz", ".qx", ".qy", ".qz", ".qw", "_vx", "_vy", "_vz",
+        "_px", "_py", "_pz", "_fx", "_fy", "_fz", "/speed", "|speed", "_u", "_force", "_moment",
+    ];
+    ["tx", "ty", "tz", "qx", "qy", "qz", "qw"].contains(&bare)
+        || endings.iter().any(|ending| bare.ends_with(ending))
+        || lower.contains("force")
+        || lower.contains("translation")
+}
