@@ -67,7 +67,7 @@ const TRC: [Trial; 22] = {
         ("trc/dataWithEformat.trc", 5, 119.88012, 14, M, &[]),
         ("trc/exampleFormat.trc", 5, 100.0, 3, M, &[]),
         ("trc/gait10dof18musc_walk_CRLF_line_ending.trc", 10, 60.0, 41, MM, &[]),
-        ("trc/std_walking2_markers.trc", 126, 250.0, 44, MM, &["trc/rate"]),
+        ("trc/std_walking2_markers.trc", 126, 125.0 / 4.992, 44, MM, &["trc/rate"]),
     ]
 };
 

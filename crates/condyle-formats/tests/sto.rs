@@ -117,8 +117,52 @@ fn vectors_become_columns() {
         mixed.to_string(),
         "line 6, column 3: a cell of `a` holds 2 numbers (its first row holds 3)"
     );
-    let clash = with_body("time\ta\ta_1\n0\t1,2\t3\n").unwrap_err();
-    assert_eq!(clash.code(), "sto/duplicate-column");
+    let clash = with_body("time\ta\ta_1\n0\t1,2,3\t4\n").unwrap();
+    assert_eq!(clash.value.columns, ["a_1", "a_2", "a_3", "a_1#2"]);
+    assert_eq!(codes(&clash), ["sto/vector-cells", "sto/duplicate-column"]);
+}
+
+#[test]
+fn equal_names_are_told_apart() {
+    let read = with_body("time\tknee\thip\tknee\n0\t1\t2\t3\n").unwrap();
+    assert_eq!(read.value.columns, ["knee", "hip", "knee#2"]);
+    assert_eq!(
+        read.warnings[0].to_string(),
+        "line 4: two columns are called `knee` (the later one, column 4, is read as `knee#2`)"
+    );
+    let csv = csv::read("time,a,a\n0,1,2\n").unwrap();
+    assert_eq!(
+        (csv.value.columns.concat(), csv.warned("csv/duplicate-column")),
+        ("aa#2".into(), true)
+    );
+}
+
+#[test]
+fn words_for_missing_values_and_other_styles_of_numbers() {
+    for word in ["NA", "N/A", "null", "None", "-", "--", "*", "1.#QNAN", "-1.#IND", "nan"] {
+        let read = with_body(&format!("time\ta\tb\n0\t{word}\t2\n")).unwrap();
+        assert!(read.value.value(0, 0).unwrap().is_nan(), "{word}");
+        let read = csv::read(&format!("time,a,b\n0,{word},2\n")).unwrap();
+        assert!(read.value.value(0, 0).unwrap().is_nan(), "{word}");
+        let error = with_body(&format!("time\ta\n{word}\t2\n")).unwrap_err();
+        assert_eq!(error.code(), "sto/time", "{word}");
+    }
+    for (body, code) in [
+        ("time\ta\tb\n0,5\t-1,25\t2\n", "sto/decimal-comma"),
+        ("time;a;b\n0,5;-1,25;2\n", "sto/decimal-comma"),
+        ("\"time\"\t\"a\"\t\"b\"\n\"0.5\"\t\"-1.25\"\t\"2\"\n", ""),
+        ("time\ta\tb\n0.5\t-1.25D+00\t2\n\u{1a}", ""),
+        ("\ta\tb\n0.5\t-1.25\t2\n", "sto/no-time"),
+        ("a\tb\n0.5\t-1.25\t2\n", "sto/no-time"),
+        ("time (s)\ta\tb\n0.5\t-1.25\t2\0\0", ""),
+    ] {
+        let read = with_body(body).unwrap_or_else(|e| panic!("{body:?}: {e}"));
+        assert_eq!((read.value.times[0], read.value.row(0)), (0.5, &[-1.25, 2.0][..]), "{body:?}");
+        assert_eq!(codes(&read).concat(), code, "{body:?}");
+    }
+    // In a table of vectors commas are between numbers.
+    let read = sto::read("DataType=Vec2\nendheader\ntime\ta\n0\t1,2\n").unwrap();
+    assert_eq!(read.value.row(0), [1.0, 2.0]);
 }
 
 #[test]
@@ -147,10 +191,7 @@ fn faults_say_where_and_what_would_be_right() {
     for (body, said) in [
         ("", "line 3: the file ends after `endheader`"),
         ("a\tb\n", "line 4: the first column is not `time`"),
-        (
-            "time\tknee\thip\tknee\n",
-            "line 4: columns 2 and 4 are both called `knee` (rename one of them)",
-        ),
+        ("1\t2\n3\t4\n", "line 4: the line after `endheader` holds numbers, not names"),
         ("time\ta\n0\tabc\n", "line 5, column 3: `abc` in column `a` is not a number"),
         (
             "time\ta\n0\t1\t2\n",

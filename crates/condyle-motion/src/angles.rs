@@ -151,3 +151,71 @@ fn is_length(name: &str) -> bool {
         || lower.contains("force")
         || lower.contains("translation")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use condyle_math::Vec3;
+    use condyle_model::{ModelBuilder, Range};
+
+    fn table(columns: &[&str], values: &[f64]) -> Table {
+        Table {
+            columns: columns.iter().map(|c| (*c).to_owned()).collect(),
+            times: vec![0.0],
+            values: values.to_vec(),
+            ..Table::default()
+        }
+    }
+
+    #[test]
+    fn sizes_that_tell_the_unit_and_sizes_that_do_not() {
+        // 3π is 9.42.
+        for (angle, unit) in [
+            (9.5, Some(AngleUnit::Degrees)),
+            (-120.0, Some(AngleUnit::Degrees)),
+            (9.3, None),
+            (3.2, None),
+            (-3.1, Some(AngleUnit::Radians)),
+            (0.01, Some(AngleUnit::Radians)),
+        ] {
+            // A length in millimetres and a force are no angles.
+            let mut table =
+                table(&["knee", "pelvis_tx", "ground_force_vx"], &[angle, 900.0, 800.0]);
+            let said = table.settle_angles(None, None);
+            assert_eq!(said.as_ref().map(Vec::len).ok(), unit.map(|_| 1), "{angle}");
+            assert_eq!(table.angle_unit, unit.unwrap_or_default(), "{angle}");
+        }
+        let mut nothing = table(&["knee", "pelvis_ty"], &[0.0, 900.0]);
+        assert_eq!(nothing.settle_angles(None, None).unwrap(), []);
+        let mut told = table(&["knee"], &[5.0]);
+        assert_eq!(told.settle_angles(None, Some(AngleUnit::Degrees)).unwrap(), []);
+        assert_eq!(told.angle_unit, AngleUnit::Degrees);
+        // What the file states counts, whatever the size.
+        assert_eq!(told.settle_angles(None, None).unwrap(), []);
+        assert_eq!(told.settle_angles(None, Some(AngleUnit::Radians)).unwrap().len(), 1);
+        let csv =
+            |angle| Table { angle_unit: AngleUnit::RadiansAsRule, ..table(&["knee"], &[angle]) };
+        for (angle, unit) in [(5.0, AngleUnit::Radians), (60.0, AngleUnit::Degrees)] {
+            let mut csv = csv(angle);
+            assert_eq!(csv.settle_angles(None, None).unwrap().len(), 1);
+            assert_eq!(csv.angle_unit, unit);
+        }
+    }
+
+    #[test]
+    fn ranges_tell_what_the_size_does_not() {
+        let mut b = ModelBuilder::new("leg");
+        let shank = b.segment("shank", None);
+        let (_, angle) = b.hinge("knee", shank, "angle", Vec3::Z);
+        b.coordinate_mut(angle).range = Range::new(-2.0, 0.2);
+        let model = b.build().unwrap();
+        // 5 rad are 4.8 rad beyond the range; 1.5 rad are 1.3 beyond it, but small for degrees.
+        for (angle, unit) in
+            [(5.0, Some(AngleUnit::Degrees)), (1.5, None), (1.1, Some(AngleUnit::Radians))]
+        {
+            let mut table = table(&["angle", "total"], &[angle, 500.0]);
+            assert_eq!(table.settle_angles(Some(&model), None).is_ok(), unit.is_some(), "{angle}");
+            assert_eq!(table.angle_unit, unit.unwrap_or_default(), "{angle}");
+        }
+    }
+}

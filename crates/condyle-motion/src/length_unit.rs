@@ -28,7 +28,8 @@ impl LengthUnit {
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         // C3D cuts units to four letters: "mete".
-        match name.trim().trim_end_matches('.').to_ascii_lowercase().as_str() {
+        let bare = name.trim().trim_matches(['(', ')', '[', ']']).trim_end_matches('.');
+        match bare.to_ascii_lowercase().as_str() {
             "m" | "mete" | "meter" | "meters" | "metre" | "metres" => Some(Self::Metre),
             "cm" | "centimeter" | "centimeters" | "centimetre" | "centimetres" => {
                 Some(Self::Centimetre)

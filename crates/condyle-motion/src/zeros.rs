@@ -94,3 +94,38 @@ impl Recording {
         said
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_decided_for_each_kind_of_marker() {
+        // Always at zero; at zero and elsewhere; at zero and not seen; never at zero.
+        let [zero, away] = [Observed::from([0.0; 3]), Observed::from([0.0, 0.0, 1.0])];
+        let rows = [[zero, zero, zero, away], [zero, away, Observed::MISSING, away]];
+        let settled = |zeros| {
+            let mut recording = Recording {
+                labels: ["a", "b", "c", "d"].map(str::to_owned).to_vec(),
+                times: vec![0.0, 0.01],
+                positions: rows.concat(),
+                ..Recording::default()
+            };
+            let said = recording.settle_zeros(zeros);
+            let codes: Vec<_> = said.iter().map(|d| d.code).collect();
+            let frame: Vec<bool> =
+                recording.frame(0).iter().map(|p| p.position().is_some()).collect();
+            (frame, codes.join(" "))
+        };
+        let told = settled(Zeros::Told);
+        assert_eq!(
+            told,
+            (vec![true, false, true, true], "recording/zeros recording/origin".into())
+        );
+        assert_eq!(settled(Zeros::Keep), (vec![true; 4], String::new()));
+        assert_eq!(
+            settled(Zeros::Missing),
+            (vec![false, false, false, true], "recording/zeros".into())
+        );
+    }
+}

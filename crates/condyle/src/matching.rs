@@ -228,3 +228,59 @@ fn choose<'a, 'l>(
     }
     Ok(Some(chosen))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use condyle_math::Vec3;
+    use condyle_model::ModelBuilder;
+
+    fn matched(
+        names: &[&str],
+        labels: &[&str],
+        subject: Option<&str>,
+    ) -> Result<Vec<usize>, String> {
+        let mut b = ModelBuilder::new("body");
+        let body = b.segment("body", None);
+        names.iter().for_each(|name| {
+            b.marker(*name, Some(body), Vec3::X);
+        });
+        let labels: Vec<String> = labels.iter().map(|l| (*l).to_owned()).collect();
+        let found = match_markers(&b.build().unwrap(), &labels, subject);
+        found
+            .map(|(found, _)| found.iter().map(|m| m.label).collect())
+            .map_err(|error| error.code().to_owned())
+    }
+
+    #[test]
+    fn one_prefix_holds_for_all_markers() {
+        let names = ["A", "B", "C"];
+        for separator in SEPARATORS {
+            let join = |list: [&str; 6]| list.map(|l| l.replace(':', &separator.to_string()));
+            let two = join(["S1:A", "S2:A", "S1:B", "S2:B", "S1:C", "S2:C"]);
+            let two: Vec<&str> = two.iter().map(String::as_str).collect();
+            assert_eq!(matched(&names, &two, None), Err("track/subjects".into()), "{separator}");
+            assert_eq!(matched(&names, &two, Some("S2")), Ok(vec![1, 3, 5]), "{separator}");
+            assert_eq!(matched(&names, &two, Some("S4")), Err("track/subject".into()));
+            // Alone, it needs no telling.
+            let one: Vec<&str> = two.iter().copied().step_by(2).collect();
+            assert_eq!(matched(&names, &one, None), Ok(vec![0, 1, 2]), "{separator}");
+        }
+        // Of a second person, a marker or two that are less than half are no doubt.
+        assert_eq!(matched(&names, &["S1:A", "S2:A", "S2:B", "S2:C"], None), Ok(vec![1, 2, 3]));
+        // Labels without a prefix win, and complete those with one.
+        assert_eq!(
+            matched(&names, &["S1:A", "A", "B", "C", "S1:B", "S1:C"], None),
+            Ok(vec![1, 2, 3])
+        );
+        assert_eq!(matched(&names, &["S1:A", "S1:B", "c"], None), Ok(vec![0, 1, 2]));
+        assert_eq!(matched(&names, &["x", "*12"], None), Ok(vec![]));
+    }
+
+    #[test]
+    fn sides_are_no_subjects() {
+        let names = ["ASIS", "PSIS", "KNEE"];
+        let labels = ["L_ASIS", "L_PSIS", "L_KNEE", "R_ASIS", "R_PSIS", "R_KNEE"];
+        assert_eq!(matched(&names, &labels, None), Ok(vec![]));
+    }
+}

@@ -90,6 +90,7 @@ pub fn read(text: &str) -> Result<Read<Table>, Error> {
     // The name of the first column is left out, or all names are one for each cell after it.
     let blank = names.first().is_some_and(|name| name.is_empty());
     let nameless = !blank
+        && !names.first().is_some_and(is_time)
         && header.range.is_none()
         && lines.clone().next().is_some_and(|row| {
             let cells = delimiter.cells(row.text);

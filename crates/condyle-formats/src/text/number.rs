@@ -36,29 +36,22 @@ pub fn number(text: &str) -> Option<f64> {
 }
 
 /// Words that tables hold where a value is missing, in lower case.
-const MISSING: [&str; 22] = [
+const MISSING: [&str; 15] = [
     "na",
     "n/a",
     "#n/a",
     "#na",
     "n.a.",
-    "nan(snan)",
+    "<na>",
     "none",
     "null",
     "(null)",
     "nil",
     "missing",
     "undefined",
-    "<na>",
-    "-",
-    "--",
-    "---",
-    "*",
-    "**",
-    "***",
-    "?",
-    ".",
+    "nan(snan)",
     "qnan",
+    "snan",
 ];
 
 /// The number in a cell of a table; NaN where a word or a sign says that it is missing.
@@ -84,7 +77,10 @@ pub fn cell(text: &str) -> Option<f64> {
     }
     let lower = text.to_ascii_lowercase();
     let word = lower.trim_start_matches(['+', '-']);
-    if MISSING.contains(&lower.as_str()) || (word != lower && word == "qnan") {
+    let signs = ['-', '*', '.', '?', '_'];
+    let only_signs =
+        signs.iter().any(|sign| !lower.is_empty() && lower.chars().all(|c| c == *sign));
+    if only_signs || MISSING.contains(&lower.as_str()) || MISSING[13..].contains(&word) {
         return Some(f64::NAN);
     }
     number(text).or_else(|| {
@@ -102,9 +98,12 @@ pub(crate) fn with_comma(text: &str) -> Option<f64> {
 
 /// A cell without the quotes around it.
 pub(crate) fn unquoted(text: &str) -> &str {
-    let text = text.trim();
-    let inner = ['"', '\''].iter().find_map(|&q| text.strip_prefix(q)?.strip_suffix(q));
-    inner.map_or(text, str::trim)
+    let mut text = text.trim();
+    while let Some(inner) = ['"', '\''].iter().find_map(|&q| text.strip_prefix(q)?.strip_suffix(q))
+    {
+        text = inner.trim();
+    }
+    text
 }
 
 /// The shortest decimal that reads back as the same number; an exponent only for the very small

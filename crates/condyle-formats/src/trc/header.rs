@@ -310,7 +310,20 @@ fn time_column(cells: &[&str]) -> Option<usize> {
         lower.starts_with("time") && !lower.starts_with("timestamp")
     };
     let at = cells.iter().take(4).position(|cell| is_time(cell))?;
-    let frames = ["", "frame", "sub", "field", "sample", "index", "item", "#", "no"];
+    let frames = [
+        "",
+        "frame",
+        "sub",
+        "field",
+        "sample",
+        "index",
+        "item",
+        "#",
+        "no",
+        "timestamp",
+        "time stamp",
+        "system",
+    ];
     let before = cells[..at].iter().map(|cell| cell.to_ascii_lowercase());
     let known =
         |cell: String| frames.iter().any(|f| cell == *f || !f.is_empty() && cell.starts_with(f));

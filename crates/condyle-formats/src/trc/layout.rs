@@ -38,9 +38,9 @@ impl Rows {
         for line in lines.filter(|line| !line.is_blank()).take(ROWS) {
             let delimiter = header.delimiter.unwrap_or_else(|| Delimiter::of(line.text));
             let cells = delimiter.cells(line.text);
-            let start = |cell_: &&str| match cell(cell_).or_else(|| with_comma(cell_)) {
+            let start = |text: &&str| match cell(text).or_else(|| with_comma(text)) {
                 Some(value) if value.is_finite() => Start::Number(value),
-                _ if cell_.is_empty() => Start::Blank,
+                _ if text.is_empty() => Start::Blank,
                 _ => Start::Other,
             };
             let width = cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1);
@@ -63,6 +63,11 @@ impl Rows {
         self.starts.iter().all(|row| {
             row.get(columns.clone()).is_some_and(|cells| cells.iter().all(|c| *c == Start::Blank))
         })
+    }
+
+    /// Whether a column holds neither numbers nor blanks, as times of day.
+    fn all_words(&self, column: usize) -> bool {
+        self.starts.iter().all(|row| row.get(column) == Some(&Start::Other))
     }
 
     /// Whether four of five rows end with a whole marker, if coordinates begin in this column.
@@ -111,7 +116,9 @@ impl Layout {
         }
         let beside = Self { first: named.first + 1, ..named };
         add(beside, &|times| {
-            rows.all_blank(named.first..beside.first) || rows.rises_with(times, named.first)
+            rows.all_blank(named.first..beside.first)
+                || rows.all_words(named.first)
+                || rows.rises_with(times, named.first)
         });
         if let Some(time) = named.time.checked_sub(1) {
             let moved = Self { time, first: named.first - 1 };
@@ -135,7 +142,8 @@ impl Layout {
 /// Whether times step by one over the rate; None where that is unknown.
 fn has_rate(times: &[f64], rate: Option<f64>) -> Option<bool> {
     let step = median_step(times)?;
-    rate.map(|rate| (0.95..1.05).contains(&(step * rate)))
+    let mean = (times.last()? - times.first()?) / (times.len() - 1) as f64;
+    rate.map(|rate| [step, mean].iter().any(|step| (0.95..1.05).contains(&(step * rate))))
 }
 
 /// The median of the steps between times that differ.

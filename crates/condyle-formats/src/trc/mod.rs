@@ -32,7 +32,8 @@
 //! - An unknown or blank unit is guessed from the size of the data, with a warning; a size that may be
 //!   that of a body in centimetres or of a hand in millimetres is an error.
 //! - Repeated times are a warning, decreasing times an error. Where times and DataRate disagree the times
-//!   are used, with a warning; ten times apart and more is an error, unless frames were left out.
+//!   are used, with a warning; 25 times apart and more, or the numbers of frames as times, is an error
+//!   unless frames were left out.
 
 mod header;
 mod layout;

@@ -273,7 +273,7 @@ fn not_a_number(line: Line<'_>, cell: &str, what: &str) -> Error {
 /// The rate of the header; that of the times where it has none, or where they disagree, with a warning.
 ///
 /// # Errors
-/// Where times and rate are ten times apart or more and the numbers of frames do not explain it, as where
+/// Where times and rate are 25 times apart or more and the numbers of frames do not explain it, as where
 /// times are frames or milliseconds; where time stands still.
 fn rate(
     header: &Header,
@@ -296,7 +296,8 @@ fn rate(
     let Some(declared) = header.rate else { return Ok(measured) };
     let ratio = declared * step;
     let per_row = (last - first) / (times.len() - 1) as f64;
-    if (0.95..1.05).contains(&ratio) {
+    // By the median where frames are left out, by the mean where times have few digits.
+    if [ratio, declared / mean].iter().any(|ratio| (0.95..1.05).contains(ratio)) {
         return Ok(declared);
     }
     if per_row > 1.0 && (0.95..1.05).contains(&(ratio / per_row)) {
@@ -305,7 +306,8 @@ fn rate(
     }
     let message = format!("DataRate is {declared} Hz, but the times give {measured:.3} Hz");
     let other = header.other_rates.iter().find(|rate| (0.95..1.05).contains(&(**rate * step)));
-    if other.is_none() && !(0.1..10.0).contains(&ratio) {
+    let frames = step == 1.0 && ratio >= 5.0;
+    if other.is_none() && (frames || !(0.04..25.0).contains(&ratio)) {
         let like = match (step, ratio) {
             (1.0, _) => "they look like the numbers of frames",
             (_, r) if (950.0..1050.0).contains(&r) => "they look like milliseconds",
