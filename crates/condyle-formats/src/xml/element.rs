@@ -22,6 +22,11 @@ impl<'d> Element<'d> {
         Self { document, index }
     }
 
+    /// Its number in document order.
+    pub(crate) fn number(self) -> u32 {
+        self.index
+    }
+
     fn node(self) -> Option<&'d Node> {
         self.document.nodes.get(self.index as usize)
     }
