@@ -148,19 +148,60 @@ impl XmlDocument {
     }
 
     fn push(&mut self, node: roxmltree::Node<'_, '_>, parent: u32, index: u32, place: Place) {
-        let first = self.attributes.len() as u32;
-        for attribute in node.attributes() {
-            let pair = (self.keep(attribute.name()), self.keep(attribute.value()));
-            self.attributes.push(pair);
-        }
-        let attributes = (first, self.attributes.len() as u32);
-        let name = self.keep(node.tag_name().name());
         let mut own = String::new();
         for text in node.children().filter(roxmltree::Node::is_text).filter_map(|t| t.text()) {
             own.push_str(text);
             own.push(' ');
         }
-        let text = self.keep(own.trim());
+        let attributes = node.attributes().map(|a| (a.name(), a.value()));
+        self.append(node.tag_name().name(), own.trim(), attributes, parent, index, place);
+    }
+
+    /// This document with what stands inside elements of others put first into some of its own. The
+    /// places of what is put in are those of the element that received it.
+    pub(crate) fn with_inserted(&self, inserted: &[(Element<'_>, Element<'_>)]) -> Self {
+        let mut whole = Self { nodes: Vec::new(), attributes: Vec::new(), heap: String::new() };
+        let mut copy = |from: Element<'_>, parent: u32, place: Place| -> u32 {
+            let index = u32::try_from(whole.nodes.len()).unwrap_or(NONE);
+            whole.append(from.name(), from.text(), from.attributes(), parent, index, place);
+            index
+        };
+        // Where each element of a document went.
+        let parent = |went: &[u32], first: u32, e: Element<'_>| {
+            let parent = e.parent().map(|p| p.number().wrapping_sub(first) as usize);
+            parent.and_then(|p| went.get(p)).copied().unwrap_or(NONE)
+        };
+        let mut went: Vec<u32> = Vec::with_capacity(self.nodes.len());
+        for own in self.root().descendants() {
+            let mother = parent(&went, 0, own);
+            went.push(copy(own, mother, own.place()));
+            for (host, guest) in inserted.iter().filter(|(host, _)| *host == own) {
+                let mut there = vec![*went.last().unwrap_or(&NONE)];
+                for e in guest.descendants().skip(1) {
+                    let mother = parent(&there, guest.number(), e);
+                    there.push(copy(e, mother, host.place()));
+                }
+            }
+        }
+        whole
+    }
+
+    fn append<'t>(
+        &mut self,
+        name: &str,
+        text: &str,
+        attributes: impl Iterator<Item = (&'t str, &'t str)>,
+        parent: u32,
+        index: u32,
+        place: Place,
+    ) {
+        let first = self.attributes.len() as u32;
+        for (name, value) in attributes {
+            let pair = (self.keep(name), self.keep(value));
+            self.attributes.push(pair);
+        }
+        let attributes = (first, self.attributes.len() as u32);
+        let (name, text) = (self.keep(name), self.keep(text));
         self.nodes.push(Node {
             name,
             text,
@@ -291,6 +332,21 @@ mod tests {
         assert_eq!(read.value.root().attribute("n"), Some("R&D"));
         assert_eq!(read.value.root().text(), "S&J & &lol;");
         assert_eq!(read.warnings.len(), 1);
+    }
+
+    #[test]
+    fn elements_of_another_document_are_put_in() {
+        let own = XmlDocument::parse("<a>\n<s file='x'><z/></s><t/></a>").unwrap().value;
+        let other = XmlDocument::parse("<o><s n='1'><p><q>5</q></p><r/></s></o>").unwrap().value;
+        let host = own.root().child("s").unwrap();
+        let whole = own.with_inserted(&[(host, other.root().child("s").unwrap())]);
+        let names: Vec<_> = whole.root().descendants().map(|e| e.name().to_owned()).collect();
+        assert_eq!(names, ["a", "s", "p", "q", "r", "z", "t"]);
+        let set = whole.root().child("s").unwrap();
+        assert_eq!(set.children().map(Element::name).collect::<Vec<_>>(), ["p", "r", "z"]);
+        let q = set.find(&["p", "q"]).unwrap();
+        assert_eq!((q.text(), q.place().line), ("5", 2));
+        assert_eq!(q.parent().unwrap().parent(), Some(set));
     }
 
     #[test]

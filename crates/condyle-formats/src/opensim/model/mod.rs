@@ -23,9 +23,11 @@
 mod constraint;
 mod frame;
 mod function;
+mod include;
 mod joint;
 mod joint_graph;
 
+use crate::Include;
 use crate::xml::{Element, XmlDocument};
 use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Warnings};
 use condyle_math::Vec3;
@@ -34,7 +36,8 @@ use condyle_model::{CoordinateKind, Model, ModelBuilder, SegmentId};
 use frame::Frames;
 use std::collections::HashSet;
 
-/// Reads a model from the bytes of an `.osim` file.
+/// Reads a model from the bytes of an `.osim` file. Sets in files of their own are not read:
+/// [`Format::read`](crate::Format::read) asks for these.
 ///
 /// # Errors
 /// What is wrong, with its line: not XML, not a model, names that are unknown or cyclic, joints or
@@ -53,7 +56,7 @@ use std::collections::HashSet;
 /// # Ok::<(), condyle_formats::Error>(())
 /// ```
 pub fn read(bytes: &[u8]) -> Result<Read<Model>, Error> {
-    from_document(XmlDocument::from_bytes(bytes)?)
+    from_document(XmlDocument::from_bytes(bytes)?, &mut |_| Err("it is not given".to_owned()))
 }
 
 /// The model's element, bare or in its document.
@@ -61,7 +64,11 @@ pub(super) fn of(root: Element<'_>) -> Option<Element<'_>> {
     if root.is("Model") { Some(root) } else { root.child("Model") }
 }
 
-pub(super) fn from_document(document: Read<XmlDocument>) -> Result<Read<Model>, Error> {
+pub(super) fn from_document(
+    document: Read<XmlDocument>,
+    include: &mut Include<'_>,
+) -> Result<Read<Model>, Error> {
+    let document = include::put_in(document, include)?;
     let mut warnings = Warnings::default();
     warnings.extend(document.warnings);
     let root = document.value.root();
