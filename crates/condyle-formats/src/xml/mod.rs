@@ -95,13 +95,19 @@ impl XmlDocument {
         Ok(Read { value: Self::copy(&parsed)?, warnings: warnings.finish() })
     }
 
-    /// Decodes and parses bytes; see [`crate::text::decode`].
+    /// Decodes and parses bytes; see [`crate::text::decode`]. UTF-16 is recognised without a byte order
+    /// mark too, by its first `<`.
     ///
     /// # Errors
     ///
     /// As [`XmlDocument::parse`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Read<Self>, Error> {
-        let text = decode(bytes)?;
+        let marked = match bytes {
+            [b'<', 0, ..] => Some([b"\xff\xfe", bytes].concat()),
+            [0, b'<', ..] => Some([b"\xfe\xff", bytes].concat()),
+            _ => None,
+        };
+        let text = decode(marked.as_deref().unwrap_or(bytes))?;
         let mut read = Self::parse(&text.value)?;
         // A file that declares Latin-1 was read correctly: no warning.
         let head: String = text.value.chars().take(200).collect::<String>().to_lowercase();
@@ -353,6 +359,16 @@ mod tests {
     fn half_a_million_open_tags_are_refused() {
         let error = XmlDocument::parse(&"<a>".repeat(500_000)).unwrap_err();
         assert_eq!(error.code(), "xml/depth");
+    }
+
+    #[test]
+    fn utf_16_needs_no_mark() {
+        let text: Vec<u16> = "<a>é</a>".encode_utf16().collect();
+        let little: Vec<u8> = text.iter().flat_map(|unit| unit.to_le_bytes()).collect();
+        let big: Vec<u8> = text.iter().flat_map(|unit| unit.to_be_bytes()).collect();
+        for bytes in [little, big] {
+            assert_eq!(XmlDocument::from_bytes(&bytes).unwrap().value.root().text(), "é");
+        }
     }
 
     #[test]

@@ -381,6 +381,9 @@ impl<'a> Scan<'a> {
             let Some(quote @ (b'"' | b'\'')) = self.byte() else { return Ok(false) };
             self.at += 1;
             let value = self.skip_while(|b| b != quote);
+            let inside = self.text.get(value.clone()).unwrap_or_default();
+            let less = inside.match_indices('<').map(|(at, _)| value.start + at);
+            self.blanks.extend(less.map(|at| (at..at + 1, Blank::Less)));
             self.ampersands_in(value);
             if self.byte().is_none() {
                 return Ok(false);
@@ -496,6 +499,7 @@ mod tests {
             "<a n=\"R\u{7f}D\">x \u{7f} y &amp; \u{7f}nbsp; \u{7f}#0; &#xe9; p   5  1</a>"
         );
         assert_eq!(codes, ["xml/ampersand", "xml/less", "xml/less"]);
+        assert_eq!(repaired("<a n='x<y'/>").0, "<a n='x y'/>");
         let untouched = "<a><!-- & < --><![CDATA[& <]]></a>";
         assert_eq!(repaired(untouched), (untouched.to_owned(), vec![]));
     }

@@ -14,11 +14,42 @@
 //!   ├ ConstraintSet, MarkerSet
 //! ```
 //!
+//! Between them, versions 3.05.00 to 3.05.04 name the bodies of a joint by connectors and state its ends
+//! in numbers. Bodies, joints, constraints and markers count wherever they stand: in their sets, in sets
+//! that are files of their own, and among the components of the model, of a body or of any other part.
+//!
 //! Every joint becomes a joint set of the same components as in other models: a pin is a `rotate`,
 //! a custom joint a product of `translate` and `rotate` components whose numbers come from `map`
 //! components, a coordinate coupler lets one coordinate follow another. Constraints that close
 //! loops are kept as closures. Masses, muscles and forces are skipped without a warning; anything
 //! that would change the motion and is not supported is an error or a warning.
+//!
+//! What moves a body, and what is made of it:
+//!
+//! | property | versions | here |
+//! | --- | --- | --- |
+//! | `location_in_parent`, `orientation_in_parent`, `location(_in_child)`, `orientation(_in_child)` of a joint | before 3.05.05 | the ends of the joint, in six digits as OpenSim keeps them; a warning in later versions |
+//! | `translation`, `orientation` of a `PhysicalOffsetFrame` | since 3.05 | body-fixed xyz, then its place |
+//! | points and axes of a `StationDefinedFrame` | since 4.5 | its stations may be markers |
+//! | `reverse` of a joint | before 4 | the inverse motion; an error where that has no form |
+//! | `TransformAxis`: coordinates, axis, function, `is_rotation` | all | of the functions named in the error for others |
+//! | `scale` of a `MultiplierFunction`, nested too | since 2 | multiplies |
+//! | `scale_factors` of a joint | before 2 | stretch translations that are functions; a warning in later versions |
+//! | `scale_factors` of a body | all | of its geometry alone: nothing moves |
+//! | `radii_x_y_z`, `thoracic_ellipsoid_radii_x_y_z`, winging, `neutral_angle_x_z_y`, `length` | since 3 | the surface or arc of the joint |
+//! | `default_value`, once `initial_value` | all | the default |
+//! | `range`, `clamped` | all | bounds that tracking enforces only where clamped |
+//! | `locked` | all | held at its default |
+//! | `prescribed`, `prescribed_function` | all | locked at its value where that is a constant, else at the default with a warning |
+//! | `motion_type` | before 4 | determined anew from the axes, as OpenSim does |
+//! | `is_free_to_satisfy_constraints` | since 3 | nothing: tracking moves every coordinate that is not locked |
+//! | couplers: dependent, independents, function, `scale_factor` | all | the dependent follows; one that closes a circle is a closure |
+//! | `PointConstraint`, `WeldConstraint`, `ConstantDistanceConstraint` | all | closures |
+//! | other constraints, such as rolling and points on lines | all | a warning with their number |
+//! | `isDisabled`, `isEnforced` of a constraint | all | left out as stated |
+//! | `length_units` | all | a warning unless metres |
+//! | joints that close a loop, bodies without a joint | all | a copy and a closure; a free joint: each a warning |
+//! | coordinates, axes, joints that nothing takes | all | a warning for each class with their number |
 
 mod constraint;
 mod frame;
@@ -131,7 +162,7 @@ impl<'d, 'w> Reader<'d, 'w> {
         let Some(unit) = self.element.child("length_units") else { return };
         if !matches!(
             unit.text().to_ascii_lowercase().as_str(),
-            "" | "m" | "meters" | "metres" | "meter"
+            "" | "unassigned" | "m" | "meters" | "metres" | "meter"
         ) {
             let message = format!("the unit of length is stated as `{}`", unit.text());
             self.warn(
