@@ -185,8 +185,8 @@ pub const FORMATS: &[Format] = &[
         reads: &[ContentKind::Model, ContentKind::Setup],
         writes: &[],
         sniff: |bytes| starts(bytes, 4096).contains("<OpenSimDocument"),
-        read: |bytes, _| {
-            Ok(opensim::read(bytes)?.map(|holding| match holding {
+        read: |bytes, include| {
+            Ok(opensim::read(bytes, include)?.map(|holding| match holding {
                 opensim::Holding::Model(model) => Content::Model(model),
                 opensim::Holding::Setup(setup) => Content::Setup(setup),
                 opensim::Holding::Tasks(tasks) => Content::Tasks(tasks),

@@ -421,7 +421,7 @@ fn setups() {
             (
                 "order.xml",
                 tool("<time_range>2 1</time_range>"),
-                "3:1: the time range `2 1` is empty (write the first and the last time in seconds)",
+                "3:1: the time range `2 1` is reversed (write the earlier time first: `1 2`)",
             ),
             (
                 "nan.xml",

@@ -3,6 +3,7 @@
 pub mod model;
 pub mod setup;
 
+use crate::Include;
 use crate::xml::XmlDocument;
 use condyle_diagnostics::{Error, Read};
 use condyle_model::Model;
@@ -19,15 +20,15 @@ pub enum Holding {
 }
 
 /// Reads a file of OpenSim, whose kind is determined by its elements: a model, a setup of inverse
-/// kinematics, or the tasks of one.
+/// kinematics, or the tasks of one. Sets of a model that are files of their own are asked of `include`.
 ///
 /// # Errors
 /// What is wrong, with its place; `osim/unknown` if it is none of these.
-pub fn read(bytes: &[u8]) -> Result<Read<Holding>, Error> {
+pub fn read(bytes: &[u8], include: &mut Include<'_>) -> Result<Read<Holding>, Error> {
     let document = XmlDocument::from_bytes(bytes)?;
     let root = document.value.root();
     if model::of(root).is_some() {
-        return Ok(model::from_document(document)?.map(Holding::Model));
+        return Ok(model::from_document(document, include)?.map(Holding::Model));
     }
     if setup::tool_of(root).is_some() {
         return Ok(setup::from_document(document)?.map(Holding::Setup));

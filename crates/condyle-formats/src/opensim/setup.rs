@@ -3,6 +3,11 @@
 //! Paths in a setup are relative to its own folder; they are returned as written, and `Unassigned`
 //! or blank means none. The task set may be inside the setup or in a file of its own; then
 //! [`IkTasks::File`] names it and [`read_tasks`] reads it.
+//!
+//! Before version 2.4 the tool was called `IKTool`; some of these keep the marker file, the time range
+//! and the output of each trial in an `IKTrialSet`, of which the first trial is read, as OpenSim does.
+//! A time range that is absent, blank, `Unassigned`, `-Inf Inf` or the old default `-1 -1` stands for
+//! all of the recording, and so does a set without marker tasks for all markers.
 
 use crate::xml::{Element, XmlDocument};
 use condyle_diagnostics::{Diagnostic, Error, Read, Warnings, nearest};
@@ -43,7 +48,7 @@ pub enum IkTasks {
 /// What to follow, and how strongly.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct IkTaskSet {
-    /// Markers; no two of one name.
+    /// Markers; no two of one name. None at all stands for every marker with weight 1.
     pub markers: Vec<MarkerTask>,
     /// Coordinates; no two of one name.
     pub coordinates: Vec<CoordinateTask>,
@@ -152,8 +157,9 @@ const TOOL: &str = "InverseKinematicsTool";
 const OLD_TOOL: &str = "IKTool";
 
 /// The properties of a tool; unused ones are listed so that a mistyped name can be recognised.
-const PROPERTIES: [&str; 12] = [
+const PROPERTIES: [&str; 13] = [
     "IKTaskSet",
+    "IKTrialSet",
     "accuracy",
     "constraint_weight",
     "coordinate_file",
@@ -182,12 +188,17 @@ pub(super) fn from_document(document: Read<XmlDocument>) -> Result<Read<IkSetup>
             });
         }
     }
-    let tasks = match tool.child("IKTaskSet") {
+    if let Some(second) = trials(tool).nth(1) {
+        let message = format!("{} holds {} trials", tool.describe(), trials(tool).count());
+        warnings.push(
+            Diagnostic::warning("setup/trials", message)
+                .at(second.place())
+                .with_help("the first is read; make a setup of each"),
+        );
+    }
+    let tasks = match property(tool, "IKTaskSet") {
         None => {
-            warnings.push(
-                Diagnostic::warning("setup/no-tasks", format!("{} has no tasks", tool.describe()))
-                    .at(tool.place()),
-            );
+            warnings.push(no_marker_tasks(tool));
             IkTasks::Inline(IkTaskSet::default())
         }
         Some(set) => match set.attribute("file").and_then(assigned) {
@@ -203,7 +214,10 @@ pub(super) fn from_document(document: Read<XmlDocument>) -> Result<Read<IkSetup>
         output_motion_file: file(tool, "output_motion_file"),
         time_range: time_range(tool)?,
         constraint_weight: weight(tool, "constraint_weight")?.unwrap_or(f64::INFINITY),
-        accuracy: tool.child_f64("accuracy")?.unwrap_or(1e-5),
+        accuracy: match tool.child("accuracy") {
+            Some(accuracy) if assigned(accuracy.text()).is_some() => accuracy.f64()?,
+            _ => 1e-5,
+        },
         tasks,
     };
     Ok(Read { value: setup, warnings: warnings.finish() })
@@ -239,6 +253,26 @@ fn distance(a: &str, b: &str) -> usize {
     if a.len() > 64 { usize::MAX } else { strsim::levenshtein(a, b) }
 }
 
+/// The trials of a tool of old.
+fn trials<'d>(tool: Element<'d>) -> impl Iterator<Item = Element<'d>> {
+    let set = tool.child("IKTrialSet");
+    let list = set.map(|set| set.child("objects").unwrap_or(set));
+    list.into_iter().flat_map(|list| list.children()).filter(|e| e.is("IKTrial"))
+}
+
+/// A property of the tool, or of its first trial.
+fn property<'d>(tool: Element<'d>, name: &str) -> Option<Element<'d>> {
+    tool.child(name).or_else(|| trials(tool).next()?.child(name))
+}
+
+fn no_marker_tasks(at: Element<'_>) -> Diagnostic {
+    Diagnostic::note("setup/no-tasks", format!("{} has no marker tasks", at.describe()))
+        .at(at.place())
+        .with_help(
+            "every marker that model and recording share counts with weight 1, as in OpenSim",
+        )
+}
+
 /// A path, unless it is blank or `Unassigned`.
 fn assigned(path: &str) -> Option<String> {
     let path = path.trim();
@@ -246,25 +280,33 @@ fn assigned(path: &str) -> Option<String> {
 }
 
 fn file(tool: Element<'_>, name: &str) -> Option<String> {
-    tool.child_text(name).and_then(assigned)
+    property(tool, name).map(Element::text).and_then(assigned)
 }
 
 fn time_range(tool: Element<'_>) -> Result<Option<[f64; 2]>, Error> {
-    if tool.child_text("time_range").is_some_and(|text| assigned(text).is_none()) {
+    let Some(place) = property(tool, "time_range") else { return Ok(None) };
+    let mut words = place.text().split_whitespace();
+    if words.all(|word| assigned(word).is_none()) {
         return Ok(None);
     }
-    let Some(range) = tool.child_numbers::<2>("time_range")? else { return Ok(None) };
+    let range = place.numbers::<2>()?;
+    // What OpenSim wrote where no range was given, before and since version 2.
+    if range == [-1.0; 2] || range == [f64::NEG_INFINITY, f64::INFINITY] {
+        return Ok(None);
+    }
     let [start, end] = range;
-    if range == [f64::NEG_INFINITY, f64::INFINITY] {
-        return Ok(None);
+    let wrong = |message: String, help: String| {
+        Err(place.error("setup/time-range", message).with_help(help))
+    };
+    if start.is_nan() || end.is_nan() {
+        let help = "write the first and the last time in seconds, or `-Inf Inf` for all";
+        return wrong(format!("the time range `{}` is not two numbers", place.text()), help.into());
     }
-    if start <= end {
-        return Ok(Some(range));
+    if start > end {
+        let help = format!("write the earlier time first: `{end} {start}`");
+        return wrong(format!("the time range `{start} {end}` is reversed"), help);
     }
-    let place = tool.child("time_range").unwrap_or(tool);
-    Err(place
-        .error("setup/time-range", format!("the time range `{start} {end}` is empty"))
-        .with_help("write the first and the last time in seconds"))
+    Ok(Some(range))
 }
 
 /// A child's weight; `None` if there is no such child or it is blank.
@@ -287,7 +329,7 @@ fn weight(element: Element<'_>, name: &str) -> Result<Option<f64>, Error> {
 /// The task set's element: bare, in its document, or in a setup.
 pub(super) fn tasks_of(root: Element<'_>) -> Option<Element<'_>> {
     let set = std::iter::once(root).chain(root.children()).find(|e| e.is("IKTaskSet"));
-    set.or_else(|| root.find(&[TOOL, "IKTaskSet"]))
+    set.or_else(|| property(tool_of(root)?, "IKTaskSet"))
 }
 
 pub(super) fn tasks_from_document(document: Read<XmlDocument>) -> Result<Read<IkTaskSet>, Error> {
@@ -354,6 +396,9 @@ fn task_set(set: Element<'_>, warnings: &mut Warnings) -> Result<IkTaskSet, Erro
             let target = target(task)?;
             tasks.coordinates.push(CoordinateTask { name, apply, weight, target });
         }
+    }
+    if tasks.markers.is_empty() {
+        warnings.push(no_marker_tasks(set));
     }
     Ok(tasks)
 }
@@ -447,7 +492,7 @@ mod tests {
     #[test]
     fn faults_are_placed() {
         for (text, said) in [
-            ("<time_range>2 1</time_range>", "line 2, column 1: the time range `2 1` is empty"),
+            ("<time_range>2 1</time_range>", "line 2, column 1: the time range `2 1` is reversed"),
             ("<time_range>2</time_range>", "line 2, column 1: <time_range> holds 1 numbers"),
             ("<accuracy>fine</accuracy>", "line 2, column 1: `fine` in <accuracy> is not a number"),
             (
@@ -485,7 +530,9 @@ mod tests {
         let read = read("<OpenSimDocument><IKTool name='x'/></OpenSimDocument>").unwrap();
         assert!(!read.warned("setup/misspelt"));
         assert_eq!(read.value.name, "x");
-        for text in ["Unassigned", "", "-Inf Inf"] {
+        for text in
+            ["Unassigned", "", "-Inf Inf", "Unassigned Unassigned", "-1 -1", "-1.#INF 1.#INF"]
+        {
             let text = format!("<time_range>{text}</time_range>");
             assert_eq!(tool(&text).unwrap().value.time_range, None, "{text}");
         }
@@ -493,6 +540,44 @@ mod tests {
             tool("<time_range>1 2</time_range>").unwrap().value.time_range,
             Some([1.0, 2.0])
         );
+    }
+
+    #[test]
+    fn the_first_trial_of_an_old_tool_is_read() {
+        let trial = |name: &str, to: f64| {
+            format!(
+                "<IKTrial name='{name}'><marker_file>{name}.trc</marker_file><coordinate_file/>\
+                 <time_range>0.5 {to}</time_range></IKTrial>"
+            )
+        };
+        let text = format!(
+            "<IKTool name='x'><model_file>a.osim</model_file><optimizer_algorithm>cfsqp\
+             </optimizer_algorithm><IKTaskSet><IKMarkerTask name='a'><weight>2</weight>\
+             </IKMarkerTask></IKTaskSet><IKTrialSet><objects>{}{}</objects></IKTrialSet></IKTool>",
+            trial("walk", 1.0),
+            trial("run", 2.0)
+        );
+        let read = super::read(&text).unwrap();
+        assert!(read.warned("setup/trials"));
+        assert_eq!(read.value.marker_file.as_deref(), Some("walk.trc"));
+        assert_eq!(read.value.time_range, Some([0.5, 1.0]));
+        let IkTasks::Inline(tasks) = &read.value.tasks else { panic!("tasks are inline") };
+        assert_eq!(tasks.markers[0].weight, 2.0);
+        // The tasks of an old tool are found also where they alone are asked for.
+        assert_eq!(&read_tasks(&text).unwrap().value, tasks);
+    }
+
+    #[test]
+    fn no_tasks_are_told_once() {
+        for tasks in [
+            "",
+            "<IKTaskSet/>",
+            "<IKTaskSet><objects/></IKTaskSet>",
+            "<IKTaskSet><IKCoordinateTask name='k'><weight>1</weight></IKCoordinateTask></IKTaskSet>",
+        ] {
+            let codes: Vec<_> = tool(tasks).unwrap().warnings.iter().map(|w| w.code).collect();
+            assert_eq!(codes, ["setup/no-tasks"], "{tasks}");
+        }
     }
 
     #[test]

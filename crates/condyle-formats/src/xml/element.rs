@@ -22,6 +22,11 @@ impl<'d> Element<'d> {
         Self { document, index }
     }
 
+    /// Its number in document order.
+    pub(crate) fn number(self) -> u32 {
+        self.index
+    }
+
     fn node(self) -> Option<&'d Node> {
         self.document.nodes.get(self.index as usize)
     }
@@ -186,32 +191,53 @@ impl<'d> Element<'d> {
         number(self.text()).ok_or_else(|| self.expected("xml/number", "a number"))
     }
 
-    /// The text as numbers separated by space; a pair of parentheses around them is allowed.
+    /// The text as numbers separated by space, by commas or semicolons with space, or by those alone;
+    /// brackets around them and the `~` that SimTK writes are allowed.
     ///
     /// # Errors
     ///
-    /// `xml/number`, naming the part that is not a number.
+    /// `xml/number`, naming the part that is not a number; a comma that may be a decimal one is none
+    /// that separates.
     ///
     /// ```
     /// use condyle_formats::XmlDocument;
     /// let read = XmlDocument::parse("<range>-1.5 1.#INF</range>")?;
     /// assert_eq!(read.value.root().f64s()?, [-1.5, f64::INFINITY]);
+    /// let read = XmlDocument::parse("<location>~[0,-0.1, 0.03]</location>")?;
+    /// assert_eq!(read.value.root().f64s()?, [0.0, -0.1, 0.03]);
     /// # Ok::<(), condyle_formats::Error>(())
     /// ```
     pub fn f64s(self) -> Result<Vec<f64>, Error> {
-        let text = self.text();
-        let text = text.strip_prefix('(').and_then(|t| t.strip_suffix(')')).unwrap_or(text);
-        text.split_whitespace()
-            .map(|part| {
-                number(part).ok_or_else(|| {
-                    self.error(
-                        "xml/number",
-                        format!("`{}` in {} is not a number", clip(part), self.describe()),
-                    )
-                    .with_help("expected numbers separated by spaces")
-                })
-            })
-            .collect()
+        let wrong = |part: &str, help: String| {
+            let message = format!("`{}` in {} is not a number", clip(part), self.describe());
+            self.error("xml/number", message).with_help(help)
+        };
+        let separated = "expected numbers separated by spaces";
+        let mut numbers = vec![];
+        for cell in unbracketed(self.text()).split_whitespace() {
+            let parts = cell.trim_matches([',', ';']);
+            if parts.is_empty() {
+                continue;
+            }
+            if let Some(value) = number(parts) {
+                numbers.push(value);
+                continue;
+            }
+            // `0,5` is five tenths to many: only what cannot be one number is split.
+            if parts.matches([',', ';']).count() == 1 && !parts.contains(['.', ';']) {
+                let point = parts.replace(',', ".");
+                return Err(match number(&point) {
+                    Some(_) => {
+                        wrong(parts, format!("write {point}: the decimal separator is a point"))
+                    }
+                    None => wrong(parts, separated.to_owned()),
+                });
+            }
+            for part in parts.split([',', ';']) {
+                numbers.push(number(part).ok_or_else(|| wrong(parts, separated.to_owned()))?);
+            }
+        }
+        Ok(numbers)
     }
 
     /// The text as exactly `N` numbers.
@@ -280,6 +306,13 @@ impl<'d> Element<'d> {
     }
 }
 
+/// A vector without its brackets: `(0 1 2)`, `~[0,1,2]`, `{0;1;2}`.
+fn unbracketed(text: &str) -> &str {
+    let text = text.trim().trim_start_matches('~').trim_start();
+    let inside = |pair: (char, char)| text.strip_prefix(pair.0)?.strip_suffix(pair.1);
+    [('(', ')'), ('[', ']'), ('{', '}')].into_iter().find_map(inside).unwrap_or(text)
+}
+
 /// The beginning of a text, for a message.
 fn clip(text: &str) -> String {
     match text.char_indices().nth(40) {
@@ -294,6 +327,35 @@ mod tests {
 
     fn parse(text: &str) -> XmlDocument {
         XmlDocument::parse(text).unwrap().value
+    }
+
+    #[test]
+    fn vectors_are_read_with_commas_and_brackets() {
+        let read = |text: &str| parse(&format!("<v>{text}</v>")).root().f64s();
+        for text in [
+            "0, -0.1, 3",
+            "0 -0.1 3",
+            "0,-0.1,3",
+            "0 , -0.1 , 3",
+            "0;-0.1;3",
+            "(0 -0.1 3)",
+            "~[0,-0.1,3]",
+            "[0, -0.1, 3]",
+            "{0 -0.1 3}",
+            "0, -0.1, 3,",
+            "0\t-0.1\n3",
+        ] {
+            assert_eq!(read(text).unwrap(), [0.0, -0.1, 3.0], "{text}");
+        }
+        assert_eq!(read("-1.5,2").unwrap(), [-1.5, 2.0]);
+        assert!(read("").unwrap().is_empty());
+        for text in ["0,1", "0 -0,1 0,03", "1,2 3,4"] {
+            let error = read(text).unwrap_err().to_string();
+            assert!(error.contains("the decimal separator is a point"), "{error}");
+        }
+        for text in ["a", "0, b", "1,,2", "NA NA NA", "1 (2 3"] {
+            assert_eq!(read(text).unwrap_err().code(), "xml/number", "{text}");
+        }
     }
 
     #[test]

@@ -3,11 +3,15 @@
 //!
 //! Repairs keep the position of every byte, so that places in messages are places in the file:
 //!
-//! - a colon in a name with an undeclared prefix (`<HuntCrossleyForce::ContactParametersSet>`,
-//!   in 9 of 60 official OpenSim models) becomes `_`;
+//! - a colon in a name with an undeclared prefix becomes `_`; where it is doubled
+//!   (`<HuntCrossleyForce::ContactParametersSet>`, in 9 of 60 official OpenSim models) without a word;
 //! - whatever precedes `<?xml`, and that declaration itself, becomes spaces;
 //! - a comment that holds `--` becomes spaces, and so does a closing tag without an opening one
-//!   (OpenSim's own task sets end with a stray `</OpenSimDocument>`).
+//!   (OpenSim's own task sets end with a stray `</OpenSimDocument>`), and whatever else follows the
+//!   outermost element;
+//! - an ampersand that begins no entity (`R&D`, `&nbsp;`) stands for itself, a `<` that begins no tag
+//!   (`a < b`) becomes a space;
+//! - control characters, which XML forbids even when escaped, become spaces.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -16,15 +20,32 @@ use super::{MAX_ATTRIBUTES, MAX_DEPTH, MAX_PREFIXES};
 use crate::text::column_at;
 use condyle_diagnostics::{Diagnostic, Error, Place, Warnings};
 
-/// The text in a form that a namespace-aware parser accepts.
+/// Stands for a bare ampersand in a repaired text: one byte, and allowed by the parser.
+pub(super) const AMPERSAND: char = '\u{7f}';
+
+/// The text in a form that a namespace-aware parser accepts, with [`AMPERSAND`] for bare ones.
 pub(super) fn repair<'a>(text: &'a str, warnings: &mut Warnings) -> Result<Cow<'a, str>, Error> {
-    let mut scan = Scan::new(text);
+    let clean = without_controls(text, warnings);
+    let mut scan = Scan::new(&clean);
     scan.run()?;
-    let Scan { colons, blanks, .. } = scan;
-    if colons.is_empty() && blanks.is_empty() {
-        return Ok(Cow::Borrowed(text));
+    let Scan { colons, blanks, ampersands, .. } = scan;
+    if colons.is_empty() && blanks.is_empty() && ampersands.is_empty() {
+        return Ok(clean);
     }
+    let text: &str = &clean;
     let mut bytes = text.as_bytes().to_vec();
+    if let Some(&first) = ampersands.first() {
+        warnings.add("xml/ampersand", || {
+            let said = format!("`&` begins no entity here ({} such in the file)", ampersands.len());
+            let said = Diagnostic::warning("xml/ampersand", said).at(place_at(text, first));
+            said.with_help("it is read as it stands; XML wants `&amp;`")
+        });
+    }
+    for &at in &ampersands {
+        if let Some(byte) = bytes.get_mut(at) {
+            *byte = AMPERSAND as u8;
+        }
+    }
     for (range, blank) in &blanks {
         warnings.add(blank.code(), || blank.warning().at(place_at(text, range.start)));
         for byte in bytes.get_mut(range.clone()).unwrap_or_default() {
@@ -36,12 +57,15 @@ pub(super) fn repair<'a>(text: &'a str, warnings: &mut Warnings) -> Result<Cow<'
     let mut places = Places::new(text);
     for name in &colons {
         let place = places.at(name.start);
-        warnings.add("xml/prefix", || {
-            let written = text.get(name.clone()).unwrap_or_default();
-            Diagnostic::note("xml/prefix", format!("`{written}` has an undeclared prefix"))
-                .at(place)
-                .with_help(format!("read as `{}`", written.replace(':', "_")))
-        });
+        let written = text.get(name.clone()).unwrap_or_default();
+        // OpenSim itself writes names of nested C++ classes.
+        if !written.contains("::") {
+            warnings.add("xml/prefix", || {
+                Diagnostic::note("xml/prefix", format!("`{written}` has an undeclared prefix"))
+                    .at(place)
+                    .with_help(format!("read as `{}`", written.replace(':', "_")))
+            });
+        }
         for byte in bytes.get_mut(name.clone()).unwrap_or_default() {
             if *byte == b':' {
                 *byte = b'_';
@@ -54,18 +78,71 @@ pub(super) fn repair<'a>(text: &'a str, warnings: &mut Warnings) -> Result<Cow<'
         .map_err(|_| Error::new("xml/encoding", "the text could not be repaired"))
 }
 
+/// The text with spaces for the characters that XML forbids.
+fn without_controls<'a>(text: &'a str, warnings: &mut Warnings) -> Cow<'a, str> {
+    let forbidden = |c: char| {
+        matches!(c, '\0'..='\x08' | '\x0b' | '\x0c' | '\x0e'..='\x1f' | AMPERSAND)
+            || matches!(c, '\u{fffe}' | '\u{ffff}')
+    };
+    let Some(first) = text.find(forbidden) else { return Cow::Borrowed(text) };
+    let mut clean = String::with_capacity(text.len());
+    let mut count = 0usize;
+    for c in text.chars() {
+        if forbidden(c) {
+            clean.extend(std::iter::repeat_n(' ', c.len_utf8()));
+            count += 1;
+        } else {
+            clean.push(c);
+        }
+    }
+    warnings.add("xml/control", || {
+        let plural = if count == 1 { "" } else { "s" };
+        let said = format!("the file holds {count} control character{plural}");
+        let said = Diagnostic::warning("xml/control", said).at(place_at(text, first));
+        said.with_help("read as spaces; was it damaged, or padded by a copy?")
+    });
+    Cow::Owned(clean)
+}
+
+/// How many bytes of an entity start here: `&amp;`, `&#xe9;`; `None` if the ampersand is bare.
+fn entity(rest: &str) -> Option<usize> {
+    let end = rest.bytes().take(12).position(|b| b == b';')?;
+    let name = rest.get(1..end)?;
+    let known = match name.strip_prefix('#') {
+        None => matches!(name, "amp" | "lt" | "gt" | "quot" | "apos"),
+        Some(digits) => {
+            let value = match digits.strip_prefix('x') {
+                Some(hex) => u32::from_str_radix(hex, 16),
+                None => digits.parse(),
+            };
+            let sign = digits.contains(['+', '-']);
+            value.ok().and_then(char::from_u32).is_some_and(|c| {
+                !sign
+                    && (c >= ' ' || matches!(c, '\t' | '\n' | '\r'))
+                    && !matches!(c, '\u{fffe}' | '\u{ffff}')
+            })
+        }
+    };
+    known.then_some(end + 1)
+}
+
 /// What is replaced by spaces.
 #[derive(Debug, Clone, Copy)]
 enum Blank {
     BeforeDeclaration,
+    Declaration,
     Comment,
     StrayEnd,
+    AfterEnd,
+    Less,
 }
 
 impl Blank {
     fn code(self) -> &'static str {
         match self {
-            Self::BeforeDeclaration => "xml/before-declaration",
+            Self::BeforeDeclaration | Self::Declaration => "xml/before-declaration",
+            Self::AfterEnd => "xml/after-end",
+            Self::Less => "xml/less",
             Self::Comment => "xml/comment",
             Self::StrayEnd => "xml/stray-end",
         }
@@ -76,6 +153,14 @@ impl Blank {
             Self::BeforeDeclaration => {
                 ("the file does not start with `<?xml`", "the text before it was skipped")
             }
+            Self::Declaration => {
+                ("`<?xml` does not stand at the beginning", "the declaration was skipped")
+            }
+            Self::AfterEnd => (
+                "something follows the end of the outermost element",
+                "it was skipped; does the file hold two documents?",
+            ),
+            Self::Less => ("`<` begins no tag here", "read as a space; XML wants `&lt;`"),
             Self::Comment => ("a comment holds `--`", "the comment was skipped"),
             Self::StrayEnd => ("a closing tag closes nothing", "it was skipped"),
         };
@@ -139,18 +224,26 @@ struct Scan<'a> {
     /// Names whose colons must be replaced.
     colons: Vec<Range<usize>>,
     blanks: Vec<(Range<usize>, Blank)>,
+    /// Where bare ampersands are.
+    ampersands: Vec<usize>,
+    /// Where the outermost element ends.
+    end: Option<usize>,
 }
 
 impl<'a> Scan<'a> {
     fn new(text: &'a str) -> Self {
         let (colons, blanks, prefixes) = (Vec::new(), Vec::new(), Vec::new());
-        Self { text, at: 0, depth: 0, prefixes, colons, blanks }
+        Self { text, at: 0, depth: 0, prefixes, colons, blanks, ampersands: vec![], end: None }
     }
 
     /// Walks from tag to tag. Broken markup ends the walk: the parser reports the error.
     fn run(&mut self) -> Result<(), Error> {
         self.declaration();
         while let Some(found) = self.text.get(self.at..).and_then(|rest| rest.find('<')) {
+            self.ampersands_in(self.at..self.at + found);
+            if self.end.is_some_and(|end| self.junk_from(end, self.at + found)) {
+                return Ok(());
+            }
             self.at += found;
             let rest = &self.text[self.at..];
             let known = if rest.starts_with("<!--") {
@@ -164,21 +257,60 @@ impl<'a> Scan<'a> {
             } else if rest.starts_with("<![CDATA[") {
                 self.skip_past(9, "]]>")
             } else if rest.starts_with("<?") {
-                self.skip_past(2, "?>")
+                let start = self.at;
+                let whole = self.skip_past(2, "?>");
+                let declares =
+                    rest.strip_prefix("<?xml").is_some_and(|r| r.starts_with([' ', '\t']));
+                if whole && declares && start > 0 {
+                    self.blanks.push((start..self.at, Blank::Declaration));
+                }
+                whole
             } else if rest.starts_with("<!") {
                 return Err(Error::new("xml/dtd", "the file has a document type declaration")
                     .at(place_at(self.text, self.at))
                     .with_help("remove `<!DOCTYPE ...>`; entities are not expanded"));
             } else if rest.starts_with("</") {
                 self.end_tag()
+            } else if self.depth > 0 && !rest[1..].starts_with(is_name_start) {
+                self.blanks.push((self.at..self.at + 1, Blank::Less));
+                self.at += 1;
+                true
             } else {
                 self.start_tag()?
             };
             if !known {
-                break;
+                return Ok(());
             }
         }
+        if let Some(end) = self.end {
+            self.junk_from(end, self.text.len());
+        }
         Ok(())
+    }
+
+    /// Records the bare ampersands of a text or of a value.
+    fn ampersands_in(&mut self, range: Range<usize>) {
+        let Some(text) = self.text.get(range.clone()) else { return };
+        let bare = text.match_indices('&').filter(|(at, _)| entity(&text[*at..]).is_none());
+        self.ampersands.extend(bare.map(|(at, _)| range.start + at));
+    }
+
+    /// Whether something other than space, comments, instructions and closing tags follows the
+    /// outermost element before `to`, or begins there; all that follows is then blanked.
+    fn junk_from(&mut self, end: usize, to: usize) -> bool {
+        let between = self.text.get(self.at.max(end)..to).unwrap_or_default();
+        let markup = self.text.get(to..).unwrap_or_default();
+        let element =
+            markup.strip_prefix('<').is_some_and(|rest| !rest.starts_with(['!', '?', '/']));
+        if between.trim().is_empty() && !element {
+            return false;
+        }
+        let start = self.at.max(end);
+        let skipped = self.text.get(start..).unwrap_or_default();
+        let start = start + (skipped.len() - skipped.trim_start().len());
+        self.ampersands.retain(|at| *at < start);
+        self.blanks.push((start..self.text.len(), Blank::AfterEnd));
+        true
     }
 
     /// If anything precedes `<?xml`, replaces it and the declaration by spaces.
@@ -248,7 +380,11 @@ impl<'a> Scan<'a> {
             self.space();
             let Some(quote @ (b'"' | b'\'')) = self.byte() else { return Ok(false) };
             self.at += 1;
-            self.skip_while(|b| b != quote);
+            let value = self.skip_while(|b| b != quote);
+            let inside = self.text.get(value.clone()).unwrap_or_default();
+            let less = inside.match_indices('<').map(|(at, _)| value.start + at);
+            self.blanks.extend(less.map(|at| (at..at + 1, Blank::Less)));
+            self.ampersands_in(value);
             if self.byte().is_none() {
                 return Ok(false);
             }
@@ -296,6 +432,9 @@ impl<'a> Scan<'a> {
             self.prefixes.pop();
         }
         self.depth = self.depth.saturating_sub(1);
+        if self.depth == 0 && self.end.is_none() {
+            self.end = Some(self.at);
+        }
     }
 
     /// Records a name whose colons a namespace-aware parser would reject.
@@ -330,6 +469,11 @@ impl<'a> Scan<'a> {
     }
 }
 
+/// Whether a name may begin with it.
+fn is_name_start(c: char) -> bool {
+    c.is_alphabetic() || matches!(c, '_' | ':') || c as u32 > 0x7f
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -344,7 +488,45 @@ mod tests {
     fn undeclared_prefixes_lose_their_colon() {
         let (text, codes) = repaired("<a><H::P x:y=\"u:v\">t:t<!--c:d--></H::P></a>");
         assert_eq!(text, "<a><H__P x_y=\"u:v\">t:t<!--c:d--></H__P></a>");
-        assert_eq!(codes, ["xml/prefix"; 3]);
+        assert_eq!(codes, ["xml/prefix"]);
+    }
+
+    #[test]
+    fn bare_ampersands_and_less_signs_are_no_markup() {
+        let (text, codes) = repaired("<a n=\"R&D\">x & y &amp; &nbsp; &#0; &#xe9; p < 5 <1</a>");
+        assert_eq!(
+            text,
+            "<a n=\"R\u{7f}D\">x \u{7f} y &amp; \u{7f}nbsp; \u{7f}#0; &#xe9; p   5  1</a>"
+        );
+        assert_eq!(codes, ["xml/ampersand", "xml/less", "xml/less"]);
+        assert_eq!(repaired("<a n='x<y'/>").0, "<a n='x y'/>");
+        let untouched = "<a><!-- & < --><![CDATA[& <]]></a>";
+        assert_eq!(repaired(untouched), (untouched.to_owned(), vec![]));
+    }
+
+    #[test]
+    fn control_characters_become_spaces() {
+        let (text, codes) = repaired("<a>\u{1}b\u{ffff}</a>\0\0\x1a");
+        assert_eq!(text.trim_end(), "<a> b   </a>");
+        assert_eq!(codes, ["xml/control"]);
+    }
+
+    #[test]
+    fn what_follows_the_end_is_skipped() {
+        for junk in ["<x/>", "junk", "<x>", "<a/><!-- -->", " & <x a='&'/>", "<"] {
+            let (text, codes) = repaired(&format!("<a><b/></a>\n<!-- c -->\n{junk}"));
+            assert_eq!(text.trim_end(), "<a><b/></a>\n<!-- c -->", "{junk}");
+            assert_eq!(codes, ["xml/after-end"], "{junk}");
+        }
+        let fine = "<a/>\n<!-- c --><?p q?>\n";
+        assert_eq!(repaired(fine), (fine.to_owned(), vec![]));
+    }
+
+    #[test]
+    fn a_declaration_after_a_comment_is_skipped() {
+        let (text, codes) = repaired("<!-- c --><?xml version='1.0'?><a/>");
+        assert_eq!(text.replace(' ', ""), "<!--c--><a/>");
+        assert_eq!(codes, ["xml/before-declaration"]);
     }
 
     #[test]

@@ -71,7 +71,7 @@ impl<'a> Job<'a> {
         if weighed.is_empty() {
             return Err(no_common_markers(&model, recording));
         }
-        let frames = frames_in(recording, request.time_range)?;
+        let frames = frames_in(recording, request.time_range, &mut warnings)?;
         let (seen, hidden): (Vec<Match>, Vec<Match>) =
             weighed.iter().copied().partition(|found| is_seen(recording, &frames, found.label));
         // Where no marker is ever seen, every frame says so.
@@ -332,21 +332,39 @@ fn no_common_markers(model: &Model, recording: &Recording) -> Error {
     Error::new("track/no-common-markers", message)
 }
 
-fn frames_in(recording: &Recording, range: Option<[f64; 2]>) -> Result<Range<usize>, Error> {
+fn frames_in(
+    recording: &Recording,
+    range: Option<[f64; 2]>,
+    warnings: &mut Vec<Diagnostic>,
+) -> Result<Range<usize>, Error> {
     let times = &recording.times;
     let Some([first, last]) = range else { return Ok(0..times.len()) };
     // A little slack: ranges are written with fewer digits than times.
     let slack = 1e-6;
     let start = times.partition_point(|&t| t < first - slack);
     let end = times.partition_point(|&t| t <= last + slack);
-    if start < end {
-        return Ok(start..end);
-    }
     let [from, to] = [times.first(), times.last()].map(|t| t.copied().unwrap_or(0.0));
-    let message = format!(
-        "no frame lies between {first} and {last} s: the recording runs from {from} to {to} s"
-    );
-    Err(Error::new("track/no-frames", message))
+    if start >= end {
+        let known = match (times.get(start.wrapping_sub(1)), times.get(start)) {
+            (Some(before), Some(after)) => {
+                format!("the nearest frames are at {before} and {after} s")
+            }
+            _ => format!("the recording runs from {from} to {to} s"),
+        };
+        let message = format!("no frame lies between {first} and {last} s: {known}");
+        return Err(Error::new("track/no-frames", message));
+    }
+    let period = 1.5 * (to - from) / (times.len() - 1).max(1) as f64;
+    let beyond = |by: f64| by.is_finite() && by > period;
+    if beyond(from - first) || beyond(last - to) {
+        let message = format!(
+            "the times from {first} to {last} s reach beyond the recording, which runs from {from} to \
+             {to} s"
+        );
+        let said = Diagnostic::note("track/time-range", message);
+        warnings.push(said.with_help("the frames within are tracked"));
+    }
+    Ok(start..end)
 }
 
 /// Runs `work` for every index, on threads where the feature allows, in any order; the answers

@@ -33,8 +33,11 @@ impl Request {
     }
 
     fn add_tasks(&mut self, tasks: &IkTaskSet) {
-        let on = tasks.markers.iter().filter(|t| t.apply);
-        self.marker_weights = Some(on.map(|t| (t.name.clone(), t.weight)).collect());
+        // A set without marker tasks asks for all markers, one whose tasks are off for none.
+        if !tasks.markers.is_empty() {
+            let on = tasks.markers.iter().filter(|t| t.apply);
+            self.marker_weights = Some(on.map(|t| (t.name.clone(), t.weight)).collect());
+        }
         let on = tasks.coordinates.iter().filter(|t| t.apply && t.weight > 0.0);
         let coordinate = |t: &setup::CoordinateTask| CoordinateRequest {
             name: t.name.clone(),

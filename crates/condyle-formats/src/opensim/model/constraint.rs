@@ -1,7 +1,7 @@
 //! Constraints: couplers become dependencies of coordinates, the rest closures.
 
 use super::function::{self, AnyFunction};
-use super::{Base, Reader, triple};
+use super::{Base, Reader, is_constraint, triple};
 use crate::opensim::model::frame::Frames;
 use crate::xml::Element;
 use condyle_diagnostics::{Error, nearest};
@@ -11,11 +11,13 @@ use condyle_model::model::{Closure, Condition};
 use condyle_model::{CoordinateId, Signal};
 use std::collections::HashMap;
 
-/// Reads the constraint set.
+/// Reads all constraints.
 pub(super) fn read_all(reader: &mut Reader<'_, '_>) -> Result<(), Error> {
     // For every coordinate that follows others, those others.
     let mut leaders: HashMap<CoordinateId, Vec<CoordinateId>> = HashMap::new();
-    for element in reader.set_objects("ConstraintSet") {
+    let mut unknown = vec![];
+    for element in reader.parts(is_constraint) {
+        reader.uses(element);
         let off = element.child_bool("isDisabled")?.unwrap_or(false)
             || !element.child_bool("isEnforced")?.unwrap_or(true);
         if off {
@@ -37,19 +39,15 @@ pub(super) fn read_all(reader: &mut Reader<'_, '_>) -> Result<(), Error> {
                 let [a, b] = [frame(reader, element, 1)?, frame(reader, element, 2)?];
                 Condition::Frames { at: [a, b] }
             }
-            other if other.ends_with("Constraint") => {
-                reader.warn(
-                    "osim/unknown-constraint",
-                    element,
-                    format!("the constraint type `{other}` is not known"),
-                    "it is ignored: tracking will not enforce it",
-                );
+            _ => {
+                unknown.push(element);
                 continue;
             }
-            _ => continue,
         };
         reader.builder.closure(Closure { name, condition });
     }
+    let help = "such constraints are not known, so tracking will not enforce them";
+    reader.say_of_each_class(&unknown, "osim/unknown-constraint", "ignored", help);
     Ok(())
 }
 
@@ -130,7 +128,8 @@ fn coupler(
     let dependent = coordinate(reader, element, dependent_at, dependent_at.text())?;
     let independents_at = element.require("independent_coordinate_names")?;
     let mut independents = vec![];
-    for name in independents_at.text().split_whitespace() {
+    let separates = |c: char| c.is_whitespace() || matches!(c, ',' | ';');
+    for name in independents_at.text().split(separates).filter(|name| !name.is_empty()) {
         independents.push(coordinate(reader, element, independents_at, name)?);
     }
     let scale = element.child_f64("scale_factor")?.unwrap_or(1.0);

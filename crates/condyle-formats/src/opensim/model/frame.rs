@@ -49,6 +49,9 @@ impl Parts {
     }
 }
 
+/// The names under which a station or a marker states its frame.
+const POINT_FRAME: &[&str] = &["parent_frame", "reference_frame", "body"];
+
 /// Every frame and station of a model file.
 pub(super) struct Frames<'d> {
     items: Vec<Item<'d>>,
@@ -73,12 +76,24 @@ enum Kind {
     StationDefined,
 }
 
+/// What a reference should lead to, where names alone leave a choice.
+#[derive(Clone, Copy, PartialEq)]
+enum Wanted {
+    Frame,
+    Point,
+}
+
+/// Whether an element stands among the defaults of a file, which are no parts of the model.
+pub(super) fn is_default(element: Element<'_>) -> bool {
+    std::iter::successors(element.parent(), |e| e.parent()).any(|e| e.is("defaults"))
+}
+
 /// The path of a component: the names on the way from the model, sets without a name by default.
 pub(super) fn path(element: Element<'_>) -> String {
     let mut names: Vec<String> = vec![];
     let mut here = Some(element);
     while let Some(e) = here
-        && !e.is("Model")
+        && !matches!(e.name(), "Model" | "OpenSimDocument")
     {
         match e.attribute("name").filter(|name| !name.is_empty()) {
             Some(name) => names.push(name.to_owned()),
@@ -118,6 +133,9 @@ impl<'d> Frames<'d> {
         let mut parts = Parts::default();
         for element in model.descendants() {
             parts.count(element)?;
+            if is_default(element) {
+                continue;
+            }
             let name = element.attribute("name").unwrap_or_default();
             let kind = match element.name() {
                 "Ground" => Kind::Base(None),
@@ -132,7 +150,8 @@ impl<'d> Frames<'d> {
                     Kind::Base(Some(builder.segment(name, None)))
                 }
                 "PhysicalOffsetFrame" | "OffsetFrame" => Kind::Offset,
-                "Station" => Kind::Station,
+                // A marker is a station too.
+                "Station" | "Marker" => Kind::Station,
                 "StationDefinedFrame" => Kind::StationDefined,
                 _ => continue,
             };
@@ -173,22 +192,34 @@ impl<'d> Frames<'d> {
             .filter(|e| !e.text().is_empty())
     }
 
-    /// The frame that a part of the model is fixed in: a socket in version 4, a body name before.
+    /// What a part of the model is fixed in, under the first of these names that it has: a socket
+    /// since version 3.05, a connector or the name of a body before.
+    pub(super) fn reference(owner: Element<'d>, names: &[&str]) -> Result<Element<'d>, Error> {
+        let plain = |name: &&str| owner.child(name).filter(|e| !e.text().is_empty());
+        let socket = |name: &&str| Self::socket(owner, name);
+        names.iter().find_map(socket).or_else(|| names.iter().find_map(plain)).ok_or_else(|| {
+            let message =
+                format!("{} does not name the frame that it is attached to", owner.describe());
+            let socket = names.first().copied().unwrap_or_default();
+            owner
+                .error("osim/no-frame", message)
+                .with_help(format!("add <socket_{socket}> with the path of a frame"))
+        })
+    }
+
+    /// The frame that a part of the model is fixed in.
     pub(super) fn of_part(
         &self,
         owner: Element<'d>,
-        socket: &str,
-        body: &str,
+        names: &[&str],
     ) -> Result<(Base, Affine), Error> {
-        match Self::socket(owner, socket).or_else(|| owner.child(body)) {
-            Some(reference) if !reference.text().is_empty() => self.resolve(owner, reference),
-            _ => Err(owner
-                .error(
-                    "osim/no-frame",
-                    format!("{} does not name the frame that it is attached to", owner.describe()),
-                )
-                .with_help(format!("add <socket_{socket}> with the path of a frame"))),
-        }
+        self.resolve(owner, Self::reference(owner, names)?)
+    }
+
+    /// The place of a station or a marker.
+    pub(super) fn point(&self, station: Element<'d>) -> Result<(Base, Vec3), Error> {
+        let (base, frame) = self.of_part(station, POINT_FRAME)?;
+        Ok((base, frame * triple(station, "location")?))
     }
 
     /// The frame that the text of `reference` names, resolved relative to the component `owner`.
@@ -197,7 +228,7 @@ impl<'d> Frames<'d> {
         owner: Element<'d>,
         reference: Element<'d>,
     ) -> Result<(Base, Affine), Error> {
-        let mut index = self.look_up(owner, reference)?;
+        let mut index = self.look_up(owner, reference, Wanted::Frame)?;
         let mut transform = Affine::IDENTITY;
         for _ in 0..=self.items.len().min(LONGEST_CHAIN) {
             let item = &self.items[index];
@@ -216,14 +247,8 @@ impl<'d> Frames<'d> {
                 }
             };
             transform = local * transform;
-            let socket = if item.kind == Kind::Station { "parent_frame" } else { "parent" };
-            let parent = Self::socket(element, socket).ok_or_else(|| {
-                element.error(
-                    "osim/no-frame",
-                    format!("{} has no <socket_{socket}>", element.describe()),
-                )
-            })?;
-            index = self.look_up(element, parent)?;
+            let names = if item.kind == Kind::Station { POINT_FRAME } else { &["parent"] };
+            index = self.look_up(element, Self::reference(element, names)?, Wanted::Frame)?;
         }
         Err(reference
             .error(
@@ -233,7 +258,12 @@ impl<'d> Frames<'d> {
             .with_help("is it its own ancestor? attach one of its ancestors to a body"))
     }
 
-    fn look_up(&self, owner: Element<'d>, reference: Element<'d>) -> Result<usize, Error> {
+    fn look_up(
+        &self,
+        owner: Element<'d>,
+        reference: Element<'d>,
+        wanted: Wanted,
+    ) -> Result<usize, Error> {
         let text = reference.text();
         if let Some(&index) = self.by_path.get(&absolute(&path(owner), text)) {
             return Ok(index);
@@ -241,8 +271,12 @@ impl<'d> Frames<'d> {
         // Files of the 4.0 betas give bare names or paths through a differently named set.
         let name = text.rsplit('/').next().unwrap_or(text);
         let named = self.by_name.get(name).map(Vec::as_slice).unwrap_or_default();
-        let body = named.iter().find(|&&i| matches!(self.items[i].kind, Kind::Base(_)));
-        if let Some(&index) = body.or(named.first()) {
+        let likely = |&i: &usize| match (self.items[i].kind, wanted) {
+            (Kind::Station, Wanted::Point) | (Kind::Base(_), Wanted::Frame) => 0,
+            (Kind::Base(_) | Kind::Offset | Kind::StationDefined, _) => 1,
+            (Kind::Station, Wanted::Frame) => 2,
+        };
+        if let Some(&index) = named.iter().min_by_key(|i| likely(i)) {
             return Ok(index);
         }
         let known = self.items.iter().map(|item| item.path.as_str());
@@ -260,22 +294,17 @@ impl<'d> Frames<'d> {
     /// the plane of a, b and c.
     fn station_defined(&self, element: Element<'d>) -> Result<(Base, Affine), Error> {
         let station = |socket: &str| -> Result<(Base, Vec3), Error> {
-            let reference = Self::socket(element, socket).ok_or_else(|| {
-                element.error(
-                    "osim/no-frame",
-                    format!("{} has no <socket_{socket}>", element.describe()),
-                )
-            })?;
-            let item = &self.items[self.look_up(element, reference)?];
+            let reference = Self::reference(element, &[socket])?;
+            let item = &self.items[self.look_up(element, reference, Wanted::Point)?];
             if item.kind != Kind::Station {
-                return Err(reference.error(
-                    "osim/unknown-frame",
-                    format!("`{}` is not a station", reference.text()),
-                ));
+                return Err(reference
+                    .error(
+                        "osim/unknown-frame",
+                        format!("`{}` is neither a station nor a marker", reference.text()),
+                    )
+                    .with_help("name a <Station> or a <Marker>"));
             }
-            let parent = Self::socket(item.element, "parent_frame").ok_or_else(|| {
-                item.element.error("osim/no-frame", "a station has no <socket_parent_frame>")
-            })?;
+            let parent = Self::reference(item.element, POINT_FRAME)?;
             let (base, frame) = self.resolve_offset(item.element, parent)?;
             Ok((base, frame * triple(item.element, "location")?))
         };
@@ -328,12 +357,12 @@ impl<'d> Frames<'d> {
         owner: Element<'d>,
         reference: Element<'d>,
     ) -> Result<(Base, Affine), Error> {
-        let mut index = self.look_up(owner, reference)?;
+        let mut index = self.look_up(owner, reference, Wanted::Frame)?;
         let mut steps = 0;
         while self.items[index].kind == Kind::Offset && steps <= self.items.len() {
             let element = self.items[index].element;
             let Some(parent) = Self::socket(element, "parent") else { break };
-            index = self.look_up(element, parent)?;
+            index = self.look_up(element, parent, Wanted::Frame)?;
             steps += 1;
         }
         if self.items[index].kind == Kind::StationDefined {

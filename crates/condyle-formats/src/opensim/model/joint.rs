@@ -19,7 +19,7 @@ use super::joint_graph::PlacedJoint;
 use super::{Reader, triple};
 use crate::xml::Element;
 use condyle_diagnostics::Error;
-use condyle_math::function::{Curve, Function};
+use condyle_math::function::{Curve, Function, FunctionOfSeveral};
 use condyle_math::{Affine, Mat3, Vec3};
 use condyle_model::component::ConstantCurvature;
 use condyle_model::{CoordinateId, CoordinateKind, JointSetId, Range, Signal};
@@ -132,6 +132,7 @@ impl<'d> Coordinates<'d> {
             let kind = standard.get(index).copied().unwrap_or(CoordinateKind::Other);
             let id = reader.builder.coordinate(set, &name, kind);
             if let Some(element) = element {
+                reader.uses(element);
                 read_properties(reader, element, id)?;
             }
             coordinates.ids.push((name, id));
@@ -165,7 +166,12 @@ fn read_properties(
     element: Element<'_>,
     id: CoordinateId,
 ) -> Result<(), Error> {
-    let default = element.child_f64("default_value")?.unwrap_or(0.0);
+    let prescribed = element.child_bool("prescribed")?.unwrap_or(false);
+    let always = if prescribed { prescribed_value(element) } else { None };
+    let stated = element.child_f64("default_value")?;
+    // Its name in the first versions.
+    let stated = stated.map_or_else(|| element.child_f64("initial_value"), |v| Ok(Some(v)))?;
+    let default = always.or(stated).unwrap_or(0.0);
     if !default.is_finite() {
         return Err(element
             .error(
@@ -177,7 +183,6 @@ fn read_properties(
     let range = element.child_numbers::<2>("range")?;
     let clamped = element.child_bool("clamped")?.unwrap_or(false);
     let locked = element.child_bool("locked")?.unwrap_or(false);
-    let prescribed = element.child_bool("prescribed")?.unwrap_or(false);
     if let Some([lower, upper]) = range
         && (lower.is_nan() || upper.is_nan())
     {
@@ -188,7 +193,7 @@ fn read_properties(
             )
             .with_help("give the lowest and the highest value"));
     }
-    if prescribed {
+    if prescribed && always.is_none() {
         reader.warn(
             "osim/prescribed",
             element,
@@ -204,6 +209,17 @@ fn read_properties(
         coordinate.range = Range { lower: side(lower), upper: side(upper), enforced: clamped };
     }
     Ok(())
+}
+
+/// The value that a coordinate is prescribed at all times; `None` if it varies.
+fn prescribed_value(element: Element<'_>) -> Option<f64> {
+    let holder = element.child("prescribed_function")?;
+    match function::inside(holder) {
+        Ok(Some(AnyFunction::One(Function { factor, curve: Curve::Constant(value) }))) => {
+            Some(factor * value)
+        }
+        _ => None,
+    }
 }
 
 fn factors(
@@ -279,7 +295,9 @@ fn custom(
     let mut turns = vec![];
     let mut slides = vec![];
     let mut kinds: Vec<CoordinateKind> = vec![CoordinateKind::Other; coordinates.ids.len()];
+    let scale = scale_factors(reader, element)?;
     for (place, axis_element) in axes(element) {
+        reader.uses(axis_element);
         let rotation = axis_element.child_bool("is_rotation")?.unwrap_or(place < 3);
         let default = [Vec3::X, Vec3::Y, Vec3::Z][place % 3];
         let axis = match axis_element.child("axis") {
@@ -289,7 +307,9 @@ fn custom(
         let drivers =
             axis_element.child("coordinates").or_else(|| axis_element.child("coordinate"));
         let mut inputs = vec![];
-        for name in drivers.map_or("", |d| d.text()).split_whitespace() {
+        let names = drivers.map_or("", |d| d.text());
+        let separates = |c: char| c.is_whitespace() || matches!(c, ',' | ';');
+        for name in names.split(separates).filter(|name| !name.is_empty()) {
             let at = drivers.unwrap_or(axis_element);
             inputs.push(coordinates.named(element, at, name)?);
         }
@@ -318,7 +338,11 @@ fn custom(
         }
         let name = axis_element.attribute("name").filter(|n| !n.is_empty());
         let name = name.map_or_else(|| format!("axis_{}", place + 1), str::to_owned);
-        let Some(amount) = amount(reader, set, axis_element, &name, &inputs, function)? else {
+        // A coordinate that slides by itself is in metres already.
+        let (factor, axis) =
+            if rotation || is_coordinate(&function) { (1.0, axis) } else { stretched(axis, scale) };
+        let Some(amount) = amount(reader, set, axis_element, &name, &inputs, function, factor)?
+        else {
             continue;
         };
         if rotation {
@@ -332,6 +356,41 @@ fn custom(
     }
     slides.extend(turns);
     Ok(slides)
+}
+
+/// The factors by which joints before version 2 stretch the translations that are functions.
+fn scale_factors(reader: &mut Reader<'_, '_>, element: Element<'_>) -> Result<Vec3, Error> {
+    let ones = Vec3::new(1.0, 1.0, 1.0);
+    if element.child_text("scale_factors").is_none() {
+        return Ok(ones);
+    }
+    let factors = triple(element, "scale_factors")?;
+    if factors != ones && reader.version.is_some_and(|version| version >= 20000) {
+        let message = format!("<scale_factors> of {} is not used", element.describe());
+        let help = "since version 2 the functions of a joint are scaled by a MultiplierFunction";
+        reader.warn("osim/unused-property", element, message, help);
+        return Ok(ones);
+    }
+    Ok(factors)
+}
+
+/// How far a step along `axis` reaches in stretched space, and in which direction.
+fn stretched(axis: Vec3, scale: Vec3) -> (f64, Vec3) {
+    let reach = Vec3::new(axis.x * scale.x, axis.y * scale.y, axis.z * scale.z);
+    let factor = reach.norm() / axis.norm();
+    if scale == Vec3::new(1.0, 1.0, 1.0) || !factor.is_finite() {
+        return (1.0, axis);
+    }
+    if factor == 0.0 { (0.0, axis) } else { (factor, reach) }
+}
+
+/// Whether an axis is moved by its coordinate unchanged.
+fn is_coordinate(function: &Option<AnyFunction>) -> bool {
+    let Some(AnyFunction::One(Function { factor, curve })) = function else {
+        return function.is_none();
+    };
+    *factor == 1.0
+        && matches!(curve, Curve::Linear { slope, intercept } if (*slope, *intercept) == (1.0, 0.0))
 }
 
 /// The axes of a custom joint with their positions, rotations from 0 and translations from 3: by
@@ -375,7 +434,12 @@ fn amount(
     name: &str,
     inputs: &[CoordinateId],
     function: Option<AnyFunction>,
+    factor: f64,
 ) -> Result<Option<Signal>, Error> {
+    let function = function.map(|function| match function {
+        AnyFunction::One(f) => AnyFunction::One(Function { factor: f.factor * factor, ..f }),
+        several @ AnyFunction::Several(_) => several,
+    });
     let sources: Vec<Signal> = inputs.iter().map(|&id| Signal::Coordinate(id)).collect();
     let mismatch = |expected: usize| {
         element
@@ -402,10 +466,7 @@ fn amount(
             if value == 0.0 {
                 return Ok(None);
             }
-            let constant = condyle_math::function::FunctionOfSeveral::Linear {
-                slopes: vec![],
-                intercept: value,
-            };
+            let constant = FunctionOfSeveral::Linear { slopes: vec![], intercept: value };
             Ok(Some(reader.builder.combine(set, name, vec![], constant)))
         }
         (_, Some(AnyFunction::One(_))) => Err(mismatch(1)),
@@ -413,7 +474,12 @@ fn amount(
             if list.len() != function.arity() {
                 return Err(mismatch(function.arity()));
             }
-            Ok(Some(reader.builder.combine(set, name, list.to_vec(), function)))
+            let value = reader.builder.combine(set, name, list.to_vec(), function);
+            if factor == 1.0 {
+                return Ok(Some(value));
+            }
+            let scaled = FunctionOfSeveral::Linear { slopes: vec![factor], intercept: 0.0 };
+            Ok(Some(reader.builder.combine(set, &format!("{name}_scaled"), vec![value], scaled)))
         }
     }
 }

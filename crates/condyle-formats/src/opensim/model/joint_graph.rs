@@ -8,8 +8,8 @@
 //! connects to the ground get a free joint to it. OpenSim makes the same choices, so both programs
 //! have the same coordinates.
 
-use super::{Base, Reader};
-use crate::opensim::model::triple;
+use super::frame::Frames;
+use super::{Base, Reader, is_joint, triple};
 use crate::xml::Element;
 use condyle_diagnostics::Error;
 use condyle_math::{Affine, EulerOrder, Vec3};
@@ -114,39 +114,83 @@ fn six_digits(v: Vec3) -> Vec3 {
     Vec3::new(round(v.x), round(v.y), round(v.z))
 }
 
+/// The joints wherever they stand. One inside `<Joint>` of a body carries that body; all others name
+/// what they connect.
 fn stated_joints<'d>(reader: &mut Reader<'d, '_>) -> Result<Vec<Stated<'d>>, Error> {
-    let mut stated = vec![];
-    for element in reader.set_objects("JointSet") {
-        if !element.name().ends_with("Joint") {
+    let carriers: HashMap<u32, Base> =
+        reader.frames.bodies().map(|(body, base)| (body.number(), base)).collect();
+    let (mut stated, mut inside) = (vec![], vec![]);
+    let mut held = HashSet::new();
+    for element in reader.parts(is_joint) {
+        let mut around = std::iter::successors(element.parent(), |e| e.parent());
+        let holder = around.next().filter(|holder| holder.is("Joint"));
+        let carrier = around.next().filter(|_| holder.is_some());
+        let carried = carrier.and_then(|body| Some((body, *carriers.get(&body.number())?)));
+        let set = element.parent().is_some_and(|e| e.is("objects") || e.is("JointSet"));
+        let parent = Frames::reference(element, &["parent_frame", "parent_body"]);
+        // What has no parent in an unknown place is no joint of the model.
+        if parent.is_err() && !set && carried.is_none() {
             continue;
         }
-        let parent = reader.frames.of_part(element, "parent_frame", "parent_body")?;
-        let child = reader.frames.of_part(element, "child_frame", "child_body")?;
+        let from = ends(reader, element, ["location_in_parent"; 2], ["orientation_in_parent"; 2])?;
+        let to = ends(
+            reader,
+            element,
+            ["location_in_child", "location"],
+            ["orientation_in_child", "orientation"],
+        )?;
+        let (parent, frame) = reader.frames.resolve(element, parent?)?;
+        let parent = (parent, frame * from);
         let name = element.attribute("name").unwrap_or_default().to_owned();
-        stated.push(Stated { element, kind: element.name(), name, parent, child });
+        let kind = element.name();
+        match carried {
+            // The second joint of a body is left to be told as unused.
+            Some((body, _)) if !held.insert(body.number()) => {}
+            Some((body, base)) => {
+                reader.uses(element);
+                let own = body.attribute("name").unwrap_or_default();
+                let name = if name.is_empty() { format!("{own}_joint") } else { name };
+                inside.push(Stated { element, kind, name, parent, child: (base, to) });
+            }
+            None => {
+                reader.uses(element);
+                let (child, frame) =
+                    reader.frames.of_part(element, &["child_frame", "child_body"])?;
+                stated.push(Stated { element, kind, name, parent, child: (child, frame * to) });
+            }
+        }
     }
-    let bodies: Vec<(Element<'d>, Base)> = reader.frames.bodies().collect();
-    for (body, base) in bodies {
-        let Some(holder) = body.child("Joint") else { continue };
-        let Some(element) = holder.children().find(|e| e.name().ends_with("Joint")) else {
-            continue;
-        };
-        let reference = element.require("parent_body")?;
-        let (parent, frame) = reader.frames.resolve(element, reference)?;
-        let end = |place: &str, turn: &str| -> Result<Affine, Error> {
-            let angles = six_digits(triple(element, turn)?);
-            let origin = six_digits(triple(element, place)?);
-            Ok(Affine::new(EulerOrder::XYZ.to_mat3(angles.to_array()), origin))
-        };
-        let parent = (parent, frame * end("location_in_parent", "orientation_in_parent")?);
-        let child = (base, end("location", "orientation")?);
-        let own = body.attribute("name").unwrap_or_default();
-        let name = element.attribute("name").filter(|n| !n.is_empty());
-        let name = name.map_or_else(|| format!("{own}_joint"), str::to_owned);
-        stated.push(Stated { element, kind: element.name(), name, parent, child });
-    }
+    stated.extend(inside);
     Ok(stated)
 }
+
+/// The end of a joint in the frame that it names, which versions before 3.05.05 state in the joint.
+fn ends(
+    reader: &mut Reader<'_, '_>,
+    joint: Element<'_>,
+    places: [&str; 2],
+    turns: [&str; 2],
+) -> Result<Affine, Error> {
+    let given = |names: [&str; 2]| -> Result<Vec3, Error> {
+        let found = names.into_iter().find(|name| joint.child_text(name).is_some());
+        triple(joint, found.unwrap_or(names[0]))
+    };
+    let (origin, angles) = (given(places)?, given(turns)?);
+    if origin == Vec3::ZERO && angles == Vec3::ZERO {
+        return Ok(Affine::IDENTITY);
+    }
+    let new = Frames::socket(joint, "parent_frame").is_some();
+    if new && reader.version.is_none_or(|version| version >= FRAMES_IN_JOINTS) {
+        let message = format!("<{}> of {} is not used", places[0], joint.describe());
+        let help = "since version 4 a joint states its ends as frames: use a PhysicalOffsetFrame";
+        reader.warn("osim/unused-property", joint, message, help);
+        return Ok(Affine::IDENTITY);
+    }
+    Ok(Affine::new(EulerOrder::XYZ.to_mat3(six_digits(angles).to_array()), six_digits(origin)))
+}
+
+/// The first version whose joints state their ends as frames.
+const FRAMES_IN_JOINTS: u32 = 30505;
 
 /// Gives unnamed and twice-named joints names of their own: `hip`, `hip_0`, `hip_1`.
 fn name_apart(reader: &mut Reader<'_, '_>, stated: &mut [Stated<'_>]) {

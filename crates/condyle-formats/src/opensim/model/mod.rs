@@ -14,26 +14,61 @@
 //!   ├ ConstraintSet, MarkerSet
 //! ```
 //!
+//! Between them, versions 3.05.00 to 3.05.04 name the bodies of a joint by connectors and state its ends
+//! in numbers. Bodies, joints, constraints and markers count wherever they stand: in their sets, in sets
+//! that are files of their own, and among the components of the model, of a body or of any other part.
+//!
 //! Every joint becomes a joint set of the same components as in other models: a pin is a `rotate`,
 //! a custom joint a product of `translate` and `rotate` components whose numbers come from `map`
 //! components, a coordinate coupler lets one coordinate follow another. Constraints that close
 //! loops are kept as closures. Masses, muscles and forces are skipped without a warning; anything
 //! that would change the motion and is not supported is an error or a warning.
+//!
+//! What moves a body, and what is made of it:
+//!
+//! | property | versions | here |
+//! | --- | --- | --- |
+//! | `location_in_parent`, `orientation_in_parent`, `location(_in_child)`, `orientation(_in_child)` of a joint | before 3.05.05 | the ends of the joint, in six digits as OpenSim keeps them; a warning in later versions |
+//! | `translation`, `orientation` of a `PhysicalOffsetFrame` | since 3.05 | body-fixed xyz, then its place |
+//! | points and axes of a `StationDefinedFrame` | since 4.5 | its stations may be markers |
+//! | `reverse` of a joint | before 4 | the inverse motion; an error where that has no form |
+//! | `TransformAxis`: coordinates, axis, function, `is_rotation` | all | of the functions named in the error for others |
+//! | `scale` of a `MultiplierFunction`, nested too | since 2 | multiplies |
+//! | `scale_factors` of a joint | before 2 | stretch translations that are functions; a warning in later versions |
+//! | `scale_factors` of a body | all | of its geometry alone: nothing moves |
+//! | `radii_x_y_z`, `thoracic_ellipsoid_radii_x_y_z`, winging, `neutral_angle_x_z_y`, `length` | since 3 | the surface or arc of the joint |
+//! | `default_value`, once `initial_value` | all | the default |
+//! | `range`, `clamped` | all | bounds that tracking enforces only where clamped |
+//! | `locked` | all | held at its default |
+//! | `prescribed`, `prescribed_function` | all | locked at its value where that is a constant, else at the default with a warning |
+//! | `motion_type` | before 4 | determined anew from the axes, as OpenSim does |
+//! | `is_free_to_satisfy_constraints` | since 3 | nothing: tracking moves every coordinate that is not locked |
+//! | couplers: dependent, independents, function, `scale_factor` | all | the dependent follows; one that closes a circle is a closure |
+//! | `PointConstraint`, `WeldConstraint`, `ConstantDistanceConstraint` | all | closures |
+//! | other constraints, such as rolling and points on lines | all | a warning with their number |
+//! | `isDisabled`, `isEnforced` of a constraint | all | left out as stated |
+//! | `length_units` | all | a warning unless metres |
+//! | joints that close a loop, bodies without a joint | all | a copy and a closure; a free joint: each a warning |
+//! | coordinates, axes, joints that nothing takes | all | a warning for each class with their number |
 
 mod constraint;
 mod frame;
 mod function;
+mod include;
 mod joint;
 mod joint_graph;
 
+use crate::Include;
 use crate::xml::{Element, XmlDocument};
 use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Warnings};
 use condyle_math::Vec3;
 use condyle_model::model::{AXIS_LENGTH, LOOKS_LIKE_DEGREES};
 use condyle_model::{CoordinateKind, Model, ModelBuilder, SegmentId};
 use frame::Frames;
+use std::collections::HashSet;
 
-/// Reads a model from the bytes of an `.osim` file.
+/// Reads a model from the bytes of an `.osim` file. Sets in files of their own are not read:
+/// [`Format::read`](crate::Format::read) asks for these.
 ///
 /// # Errors
 /// What is wrong, with its line: not XML, not a model, names that are unknown or cyclic, joints or
@@ -52,7 +87,7 @@ use frame::Frames;
 /// # Ok::<(), condyle_formats::Error>(())
 /// ```
 pub fn read(bytes: &[u8]) -> Result<Read<Model>, Error> {
-    from_document(XmlDocument::from_bytes(bytes)?)
+    from_document(XmlDocument::from_bytes(bytes)?, &mut |_| Err("it is not given".to_owned()))
 }
 
 /// The model's element, bare or in its document.
@@ -60,7 +95,11 @@ pub(super) fn of(root: Element<'_>) -> Option<Element<'_>> {
     if root.is("Model") { Some(root) } else { root.child("Model") }
 }
 
-pub(super) fn from_document(document: Read<XmlDocument>) -> Result<Read<Model>, Error> {
+pub(super) fn from_document(
+    document: Read<XmlDocument>,
+    include: &mut Include<'_>,
+) -> Result<Read<Model>, Error> {
+    let document = include::put_in(document, include)?;
     let mut warnings = Warnings::default();
     warnings.extend(document.warnings);
     let root = document.value.root();
@@ -78,13 +117,19 @@ struct Reader<'d, 'w> {
     builder: ModelBuilder,
     frames: Frames<'d>,
     warnings: &'w mut Warnings,
+    /// The version of the file, such as 30505; `None` if it does not say.
+    version: Option<u32>,
+    /// Parts that were taken into the model, or left out with a reason that was said.
+    used: HashSet<u32>,
 }
 
 impl<'d, 'w> Reader<'d, 'w> {
     fn new(element: Element<'d>, warnings: &'w mut Warnings) -> Result<Self, Error> {
         let mut builder = ModelBuilder::new(element.attribute("name").unwrap_or("model"));
         let frames = Frames::collect(element, &mut builder)?;
-        Ok(Self { element, builder, frames, warnings })
+        let version = element.parent().and_then(|root| root.attribute("Version"));
+        let version = version.and_then(|version| version.trim().parse().ok());
+        Ok(Self { element, builder, frames, warnings, version, used: HashSet::new() })
     }
 
     fn read(mut self) -> Result<Model, Error> {
@@ -94,6 +139,8 @@ impl<'d, 'w> Reader<'d, 'w> {
         }
         constraint::read_all(&mut self)?;
         self.markers()?;
+        self.say_unused();
+        self.length_unit();
         let line = self.element.place();
         let built = self.builder.build_with_warnings();
         let Read { value: model, warnings } = built.map_err(|error| at_model(error, line))?;
@@ -110,6 +157,23 @@ impl<'d, 'w> Reader<'d, 'w> {
         Ok(model)
     }
 
+    /// OpenSim itself takes all lengths of a model as metres.
+    fn length_unit(&mut self) {
+        let Some(unit) = self.element.child("length_units") else { return };
+        if !matches!(
+            unit.text().to_ascii_lowercase().as_str(),
+            "" | "unassigned" | "m" | "meters" | "metres" | "meter"
+        ) {
+            let message = format!("the unit of length is stated as `{}`", unit.text());
+            self.warn(
+                "osim/length-unit",
+                unit,
+                message,
+                "lengths are taken as metres, as in OpenSim",
+            );
+        }
+    }
+
     fn warn(
         &mut self,
         code: &'static str,
@@ -121,22 +185,22 @@ impl<'d, 'w> Reader<'d, 'w> {
         self.warnings.push(said);
     }
 
-    /// All elements `kind` of the set of that name, in order.
-    fn set_objects(&self, set: &str) -> Vec<Element<'d>> {
-        self.element
-            .children_named(set)
-            .flat_map(|set| set.child("objects").into_iter().chain(Some(set)))
-            .flat_map(|list| list.children())
-            .filter(|e| !matches!(e.name(), "objects" | "groups" | "defaults"))
-            .collect()
+    /// The parts of a class wherever they stand, in file order: in their set, among the components of
+    /// the model, of a body or of any other part.
+    fn parts(&self, is_class: impl Fn(&str) -> bool) -> Vec<Element<'d>> {
+        let parts = self.element.descendants().filter(|e| is_class(e.name()));
+        parts.filter(|e| !frame::is_default(*e)).collect()
+    }
+
+    /// Notes that a part is in the model, or that it was said why it is not.
+    fn uses(&mut self, element: Element<'_>) {
+        self.used.insert(element.number());
     }
 
     fn markers(&mut self) -> Result<(), Error> {
-        let mut seen = std::collections::HashSet::new();
-        for element in self.set_objects("MarkerSet") {
-            if !element.is("Marker") {
-                continue;
-            }
+        let mut seen = HashSet::new();
+        for element in self.parts(|class| class == "Marker") {
+            self.uses(element);
             let name = element.attribute("name").unwrap_or_default().to_owned();
             if !seen.insert(name.clone()) {
                 self.warn(
@@ -147,12 +211,75 @@ impl<'d, 'w> Reader<'d, 'w> {
                 );
                 continue;
             }
-            let point = triple(element, "location")?;
-            let (base, frame) = self.frames.of_part(element, "parent_frame", "body")?;
-            self.builder.marker(&name, base, frame * point);
+            let (base, point) = self.frames.point(element)?;
+            self.builder.marker(&name, base, point);
         }
         Ok(())
     }
+
+    /// Says of each class that moves something how many of its parts were not used.
+    fn say_unused(&mut self) {
+        let unused: Vec<Element<'d>> = self
+            .parts(is_kinematic)
+            .into_iter()
+            .filter(|e| !self.used.contains(&e.number()))
+            .collect();
+        self.say_of_each_class(
+            &unused,
+            "osim/unused",
+            "not used",
+            "they stand where OpenSim looks for none, or exceed what the joint takes",
+        );
+    }
+
+    /// One warning for each class among these, with their number and the first names.
+    fn say_of_each_class(
+        &mut self,
+        elements: &[Element<'d>],
+        code: &'static str,
+        what: &str,
+        help: &str,
+    ) {
+        let mut classes: Vec<&str> = elements.iter().map(|e| e.name()).collect();
+        classes.sort_unstable();
+        classes.dedup();
+        for class in classes {
+            let all: Vec<Element<'d>> = elements.iter().copied().filter(|e| e.is(class)).collect();
+            let names = all.iter().filter_map(|e| e.attribute("name"));
+            let mut names: Vec<String> = names
+                .filter(|n| !n.is_empty())
+                .take(NAMES_SAID)
+                .map(|n| format!("`{n}`"))
+                .collect();
+            if names.len() < all.len() && !names.is_empty() {
+                names.push("…".to_owned());
+            }
+            let list =
+                if names.is_empty() { String::new() } else { format!(": {}", names.join(", ")) };
+            let message = format!("{} <{class}> {what}{list}", all.len());
+            if let Some(first) = all.first() {
+                self.warn(code, *first, message, help);
+            }
+        }
+    }
+}
+
+/// How many names a warning lists.
+const NAMES_SAID: usize = 5;
+
+/// Whether parts of this class move something: all of them must be accounted for.
+fn is_kinematic(class: &str) -> bool {
+    is_joint(class)
+        || is_constraint(class)
+        || matches!(class, "Marker" | "Coordinate" | "TransformAxis")
+}
+
+fn is_joint(class: &str) -> bool {
+    class.ends_with("Joint") && class != "Joint"
+}
+
+fn is_constraint(class: &str) -> bool {
+    class.ends_with("Constraint") && class != "Constraint"
 }
 
 /// The errors of a model that contradicts itself, at its element.
