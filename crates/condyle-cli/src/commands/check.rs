@@ -1,7 +1,7 @@
 //! `condyle check`: inconsistencies of a model, and where a motion violates it.
 
 use super::{Angles, Outcome};
-use crate::failure::Failure;
+use crate::failure::{Failure, warn_about};
 use crate::output::{self, columns};
 use clap::Args;
 
@@ -38,12 +38,14 @@ impl Check {
         if let Some(path) = &self.motion {
             let mut table = open::table(path)?;
             let settled = open::settled(model, &mut table.value, self.angles.map(Into::into));
-            table.warnings.extend(settled.map_err(|error| {
-                Failure::from(OpenError {
-                    path: path.clone(),
-                    cause: Cause::Content { error, text: None },
-                })
-            })?);
+            // A guess of the unit is no fault of the motion.
+            warn_about(
+                path,
+                &settled.map_err(|error| {
+                    let cause = Cause::Content { error, text: None };
+                    Failure::from(OpenError { path: path.clone(), cause })
+                })?,
+            );
             let mut checked = check::motion::check(model, &table.value);
             checked.findings.splice(0..0, table.warnings);
             motion = Some(checked);
