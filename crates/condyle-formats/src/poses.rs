@@ -297,3 +297,79 @@ fn with_unit(key: &str, text: &str, kind: CoordinateKind) -> Result<f64, Error> 
         _ => wrong("it has no unit: give a number"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use condyle_math::Vec3;
+    use condyle_model::ModelBuilder;
+
+    fn model() -> Model {
+        let mut b = ModelBuilder::new("arm");
+        let [forearm, hand] = ["forearm", "hand"].map(|name| b.segment(name, None));
+        let (set, _) = b.hinge("elbow", forearm, "flexion", Vec3::Z);
+        b.coordinate(set, "slide", CoordinateKind::Translation);
+        b.ball_joint("wrist", hand);
+        b.build().unwrap()
+    }
+
+    fn resolved(text: &str) -> Result<(Vec<f64>, Vec<&'static str>), String> {
+        let (model, poses) = (model(), read(text.as_bytes()).unwrap().value);
+        let said = poses.remarks(&model).iter().map(|d| d.code).collect();
+        let resolved = poses.resolve(&model).map_err(|error| error.to_string())?;
+        Ok((resolved.motion.frames.concat(), said))
+    }
+
+    #[test]
+    fn texts_have_units() {
+        for (value, radians) in [
+            ("\"90 deg\"", std::f64::consts::FRAC_PI_2),
+            ("\"-180°\"", -std::f64::consts::PI),
+            ("\"1.5 rad\"", 1.5),
+            ("\"1e-1 Radians\"", 0.1),
+            ("1.5", 1.5),
+        ] {
+            let (stored, said) = resolved(&format!("{{\"flexion\": {value}}}")).unwrap();
+            assert_eq!((stored[0], said), (radians, vec![]), "{value}");
+        }
+        for (value, metres) in [("\"12 mm\"", 0.012), ("\"1.2cm\"", 0.012), ("\"2 m\"", 2.0)] {
+            assert_eq!(
+                resolved(&format!("{{\"slide\": {value}}}")).unwrap().0[1],
+                metres,
+                "{value}"
+            );
+        }
+        for wrong in [
+            r#"{"flexion": "90"}"#,
+            r#"{"flexion": "90 mm"}"#,
+            r#"{"flexion": "deg"}"#,
+            r#"{"flexion": "1 2 deg"}"#,
+            r#"{"flexion": "inf deg"}"#,
+            r#"{"slide": "3 deg"}"#,
+            r#"{"slide": ""}"#,
+        ] {
+            assert!(resolved(wrong).unwrap_err().contains("give"), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn large_angles_and_lengths_of_orientations_are_remarked() {
+        let (stored, said) = resolved(r#"{"flexion": 90}"#).unwrap();
+        assert_eq!((stored[0], said), (90.0, vec!["poses/angle"]));
+        // More than a turn is meant where the unit is written.
+        assert_eq!(resolved(r#"{"flexion": "720 deg"}"#).unwrap().1, [""; 0]);
+        let wrist = |q: &str| resolved(&format!("{{\"orientation\": {q}}}"));
+        assert_eq!(wrist("[0, 0, 0.6, 0.8]").unwrap().1, [""; 0]);
+        assert_eq!(wrist("[0, 0, 6, 8]").unwrap().1, ["poses/orientation"]);
+        for wrong in [
+            "[0, 0, 1]",
+            "[0, 0, 0, 0, 1]",
+            "[0, 0, 0, 0]",
+            "[0, 0, 0, \"1\"]",
+            "1",
+            "[0,0,0,1,\"x\"]",
+        ] {
+            assert!(wrist(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -137,3 +137,48 @@ fn marker_at<'t>(table: &'t Table, index: usize, name: &'t str) -> Option<(&'t s
         Some((label, [index, find(style[1])?, find(style[2])?]))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(ends: [&str; 3], values: &[f64], header: &[(&str, &str)]) -> Table {
+        let names =
+            ["LASI", "knee_1"].iter().flat_map(|name| ends.map(|end| format!("{name}{end}")));
+        Table {
+            columns: names.chain(["force".to_owned()]).collect(),
+            times: vec![0.0],
+            values: [values, &[7.0]].concat(),
+            header: header.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect(),
+            ..Table::default()
+        }
+    }
+
+    #[test]
+    fn three_columns_make_a_marker_in_every_style() {
+        for style in STYLES.iter().chain([&["_TX", "_TY", "_TZ"], &[".X", ".Y", ".Z"]]) {
+            let values = [1.0, 2.0, 3.0, 1.5, f64::NAN, 3.5];
+            let read = Recording::from_table(&table(*style, &values, &[])).unwrap();
+            assert_eq!(read.value.labels, ["LASI", "knee_1"], "{style:?}");
+            assert_eq!(read.value.position(0, 0), Some([1.0, 2.0, 3.0]), "{style:?}");
+            assert_eq!(read.value.position(0, 1), None, "{style:?}");
+            let codes: Vec<_> = read.warnings.iter().map(|d| d.code).collect();
+            assert_eq!(codes, ["markers/other-columns", "markers/unit"], "{style:?}");
+        }
+        assert!(Recording::from_table(&table(["_a", "_b", "_c"], &[0.0; 6], &[])).is_err());
+    }
+
+    #[test]
+    fn the_unit_is_that_of_the_header_or_told_by_size() {
+        let read = |size: f64, header: &[(&str, &str)]| {
+            let values = [0.0, 0.0, 0.0, 0.0, size, 0.0];
+            Recording::from_table(&table(["_tx", "_ty", "_tz"], &values, header))
+                .map(|read| (read.value.units, read.value.extent().unwrap()))
+                .map_err(|error| error.code().to_owned())
+        };
+        assert_eq!(read(1700.0, &[]), Ok((LengthUnit::Millimetre, 1.7)));
+        assert_eq!(read(1.7, &[]), Ok((LengthUnit::Metre, 1.7)));
+        assert_eq!(read(170.0, &[]), Err("markers/unit".into()));
+        assert_eq!(read(170.0, &[("Units", "mm")]), Ok((LengthUnit::Millimetre, 0.17)));
+    }
+}

@@ -1,7 +1,7 @@
 //! `condyle check`: inconsistencies of a model, and where a motion violates it.
 
 use super::{Angles, Outcome};
-use crate::failure::Failure;
+use crate::failure::{Failure, warn_about};
 use crate::output::{self, columns};
 use clap::Args;
 
@@ -84,10 +84,12 @@ impl Check {
     fn table(&self, path: &Path, model: &Model) -> Result<Read<Table>, Failure> {
         let mut table = open::table(path)?;
         let settled = open::settled(model, &mut table.value, self.angles.map(Into::into));
-        table.warnings.extend(settled.map_err(|error| {
+        let guessed = settled.map_err(|error| {
             let cause = Cause::Content { error, text: None };
             Failure::from(OpenError { path: path.to_owned(), cause })
-        })?);
+        })?;
+        // A guess of the unit is no fault of the motion.
+        warn_about(path, &guessed);
         Ok(table)
     }
 
