@@ -158,7 +158,7 @@ fn what_cannot_be_converted_is_told_what_can() {
     assert!(said.contains("`condyle track MODEL TRIAL -o OUT` computes motions from recordings"));
     refused(&["m.mot", "-"], "name the format with --to");
     refused(&["readme.txt", "a.mot"], known);
-    let bare = leg::osim().replace("MarkerSet>", "RemarkSet>");
+    let bare = leg::osim().replace("<Marker ", "<Remark ").replace("</Marker>", "</Remark>");
     folder.write("bare.osim", bare);
     refused(&["m.mot", "m.trc", "--model", "bare.osim"], "has no markers to record");
 }
