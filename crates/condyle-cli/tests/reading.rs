@@ -71,7 +71,7 @@ fn every_trial_is_read_rightly_or_refused_with_the_reason() {
             "several subjects fit the model: `S1 (4 markers)`, `S2 (4 markers)`",
         ),
         ("30-two-subjects/trial.trc", &["--subject", "S2"], 0, "without their prefix `S2:`"),
-        ("30-two-subjects/trial.trc", &["--subject", "S3"], 2, "did you mean"),
+        ("30-two-subjects/trial.trc", &["--subject", "S3"], 2, "subjects are: S1, S2"),
         (
             "30-two-subjects/mixed.trc",
             &[],
