@@ -71,7 +71,7 @@ fn every_trial_is_read_rightly_or_refused_with_the_reason() {
             "several subjects fit the model: `S1 (4 markers)`, `S2 (4 markers)`",
         ),
         ("30-two-subjects/trial.trc", &["--subject", "S2"], 0, "without their prefix `S2:`"),
-        ("30-two-subjects/trial.trc", &["--subject", "S3"], 2, "did you mean"),
+        ("30-two-subjects/trial.trc", &["--subject", "S3"], 2, "subjects are: S1, S2"),
         (
             "30-two-subjects/mixed.trc",
             &[],
@@ -135,7 +135,7 @@ fn every_word_for_a_missing_value_is_one() {
         assert_eq!((run.code, off(&folder, "o.mot") < 1e-6), (0, true), "{path:?}: {}", run.err);
         let info = folder.condyle(&["info", text(&path), "--json"]);
         let info = String::from_utf8(info.out).unwrap();
-        assert_eq!(info.matches("\"missing_frames\": 1").count(), 1, "{path:?}: {info}");
+        assert_eq!(info.matches("\"missing_frames\":1,").count(), 1, "{path:?}: {info}");
         count += 1;
     }
     assert!(count > 0);
@@ -178,7 +178,8 @@ fn a_marker_at_zero_is_missing_where_it_is_elsewhere_in_other_frames() {
     assert!(!String::from_utf8_lossy(&run.out).contains("no gaps"));
     let run = track(&folder, &model, &trial, &["--report", "r.json"]);
     let report = std::fs::read_to_string(folder.path().join("r.json")).expect("a report");
-    let rms = report.split("\"rms_m\": ").nth(1).and_then(|rest| rest.split([',', '\n']).next());
+    // The last: before it are those of single markers.
+    let rms = report.rsplit("\"rms_m\": ").next().and_then(|rest| rest.split([',', '\n']).next());
     let rms: f64 = rms.expect("an RMS").parse().unwrap();
     // The trial without faults has 12 mm; with the zeros as places it is above 200 mm.
     assert!(run.code == 0 && rms < 0.02, "{rms} {}", run.err);

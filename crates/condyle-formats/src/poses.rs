@@ -282,7 +282,7 @@ fn with_unit(key: &str, text: &str, kind: CoordinateKind) -> Result<f64, Error> 
         Err(Error::new("poses/number", message).with_help(help))
     };
     let Some(number) = number(digits).filter(|v| v.is_finite()) else {
-        return wrong("give a number, or a text of a number and its unit");
+        return wrong("give a number, or a text such as \"90 deg\" or \"12 mm\"");
     };
     match kind {
         CoordinateKind::Rotation => match unit.as_str() {

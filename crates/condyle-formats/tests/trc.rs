@@ -264,7 +264,7 @@ fn markers_beyond_the_last_name_are_skipped() {
     let later = long.replace("1\t0\t1", "2\t0.01\t1");
     let read = with_rows(&format!("{ROW}{later}{longer}")).unwrap();
     assert_eq!(read.value.position(2, 0), Some([0.001, 0.002, 0.003]));
-    assert_eq!(codes(&read), ["trc/nameless", "trc/nameless", "trc/frame-count"]);
+    assert_eq!(codes(&read), ["trc/nameless", "trc/nameless", "trc/frame-count", "trc/size"]);
 }
 
 /// Rows of three frames at 100 Hz, with something before and behind each frame's number and time.
@@ -313,7 +313,7 @@ fn rows_that_stand_beside_their_names() {
             assert_eq!(read.value.position(frame, 0), Some([x, 0.002, 0.003]), "{what}");
             assert_eq!(read.value.position(frame, 1), Some([0.004, 0.005, 0.006]), "{what}");
         }
-        let others = ["trc/frame-count", "trc/marker-count"];
+        let others = ["trc/frame-count", "trc/marker-count", "trc/size"];
         let found: Vec<_> = codes(&read).into_iter().filter(|c| !others.contains(c)).collect();
         assert_eq!(found.concat(), code, "{what}: {:?}", read.warnings);
     }
