@@ -71,7 +71,8 @@ fn contradiction(
         }
     }
     let (d, lower, upper, outer) = worst?;
-    if !(lower - upper > 10.0 * tolerance(kind)) {
+    let gap = lower - upper;
+    if gap.is_nan() || gap <= 10.0 * tolerance(kind) {
         return None;
     }
     let what = match outer {

@@ -83,7 +83,7 @@ pub fn check_single(model: &Model, table: &Table) -> Result<(), Error> {
     for cell in cells(model, table) {
         let Some(name) = cell.column.and_then(|column| table.columns.get(column)) else { continue };
         let second = format!("{name}#2");
-        if table.columns.iter().any(|other| *other == second) {
+        if table.columns.contains(&second) {
             let message = format!("two columns are called `{name}`, a coordinate of the model");
             let help = "remove or rename one of them";
             return Err(Error::new("motion/duplicate", message).with_help(help));

@@ -45,11 +45,12 @@ impl Parts {
     fn open(path: &Path) -> Option<Self> {
         let format = Format::of_ending(&ending(path))
             .filter(|format| matches!(format.id, Id::Trc | Id::Mot | Id::Sto | Id::Csv))?;
-        let file = File::open(path).ok()?;
-        let known = file.metadata().ok()?;
+        // A pipe is not opened here: who writes into it would find its reader gone.
+        let known = std::fs::metadata(path).ok()?;
         if !known.is_file() || known.len() < LONG {
             return None;
         }
+        let file = File::open(path).ok()?;
         let mut reader = BufReader::with_capacity(1 << 16, file);
         let head = head(format.id, &mut reader)?;
         let stated = stated(format.id, &head);
