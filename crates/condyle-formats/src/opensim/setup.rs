@@ -426,4 +426,5 @@ fn target(task: Element<'_>) -> Result<CoordinateTarget, Error> {
 }
 
 #[cfg(test)]
+#[path = "setup_tests.rs"]
 mod tests;

@@ -475,4 +475,5 @@ fn is_name_start(c: char) -> bool {
 }
 
 #[cfg(test)]
+#[path = "repair_tests.rs"]
 mod tests;
