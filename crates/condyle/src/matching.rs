@@ -243,7 +243,7 @@ mod tests {
         let mut b = ModelBuilder::new("body");
         let body = b.segment("body", None);
         names.iter().for_each(|name| {
-            b.marker(*name, Some(body), Vec3::X);
+            b.marker(name, Some(body), Vec3::X);
         });
         let labels: Vec<String> = labels.iter().map(|l| (*l).to_owned()).collect();
         let found = match_markers(&b.build().unwrap(), &labels, subject);

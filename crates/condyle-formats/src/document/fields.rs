@@ -298,7 +298,9 @@ impl Reader<'_> {
         }
         let help = "give rows of length 1 at right angles, or three angles as a turn";
         let why = match matrix.determinant() {
-            det if det.is_nan() || det.abs() <= 1e-6 => ("is flat: its determinant is 0".to_owned(), help),
+            det if det.is_nan() || det.abs() <= 1e-6 => {
+                ("is flat: its determinant is 0".to_owned(), help)
+            }
             det if det < 0.0 => (
                 format!("is a reflection, not a rotation: its determinant is {}", shown(det)),
                 "exchange two rows, or change the sign of one",
