@@ -5,7 +5,8 @@ mod temporary;
 
 use crate::failure::Failure;
 use crate::screen::shown;
-use destination::Destination;
+use condyle::open;
+use destination::{Destination, Identity};
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -36,6 +37,7 @@ enum Sink {
 impl Output {
     pub(crate) fn create(path: &Path) -> Result<Self, Failure> {
         let fail = |error: io::Error| Failure::new(format!("{}: {error}", path.display()));
+        check_unread([path])?;
         let sink = match destination(path).map_err(fail)? {
             Destination::Standard => Sink::Standard,
             Destination::StandardError => Sink::StandardError,
@@ -161,27 +163,52 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 
 /// Refuses to write to a file that is read in the same call, or to one file twice.
 pub(crate) fn check_distinct(inputs: &[&Path], outputs: &[&Path]) -> Result<(), Failure> {
-    let inputs: Vec<_> =
-        inputs.iter().filter_map(|path| Some((destination::Identity::of(path)?, path))).collect();
-    let mut seen: Vec<(destination::Identity, &Path)> = vec![];
+    let inputs = identified(inputs.iter().copied());
+    let mut seen: Vec<(Identity, &Path)> = vec![];
     for path in outputs.iter().filter(|path| !is_stream(path)) {
-        let Some(identity) = destination::Identity::of(path) else { continue };
-        let shown = path.display();
-        if let Some((_, input)) = inputs.iter().find(|(input, _)| *input == identity) {
-            return Err(Failure::new(format!(
-                "{shown}: this file is also an input ({}): give another place to write to",
-                input.display()
-            )));
-        }
+        let Some(identity) = Identity::of(path) else { continue };
+        refuse_input(path, &identity, &inputs)?;
         if let Some((_, other)) = seen.iter().find(|(other, _)| *other == identity) {
             return Err(Failure::new(format!(
-                "{shown}: two results would be written to this file ({}): give each a place of its own",
+                "{}: two results would be written to this file ({}): give each a place of its own",
+                path.display(),
                 other.display()
             )));
         }
         seen.push((identity, path));
     }
     Ok(())
+}
+
+/// Refuses to write to a file that was read, were it one that another names.
+pub(crate) fn check_unread<'a>(outputs: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
+    let read = open::files_read();
+    let inputs = identified(read.iter().map(PathBuf::as_path));
+    for path in outputs {
+        if let Some(identity) = Identity::of(path) {
+            refuse_input(path, &identity, &inputs)?;
+        }
+    }
+    Ok(())
+}
+
+fn identified<'a>(inputs: impl Iterator<Item = &'a Path>) -> Vec<(Identity, &'a Path)> {
+    inputs.filter_map(|path| Some((Identity::of_input(path)?, path))).collect()
+}
+
+fn refuse_input(
+    path: &Path,
+    identity: &Identity,
+    inputs: &[(Identity, &Path)],
+) -> Result<(), Failure> {
+    match inputs.iter().find(|(input, _)| input == identity) {
+        None => Ok(()),
+        Some((_, input)) => Err(Failure::new(format!(
+            "{}: this file is also an input ({}): give another place to write to",
+            path.display(),
+            input.display()
+        ))),
+    }
 }
 
 /// Writes text for people to standard output; a closed pipe is no error.

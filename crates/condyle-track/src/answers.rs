@@ -7,13 +7,15 @@ use crate::answer::{FrameAnswer, FrameStatus};
 pub struct Run {
     coordinates: usize,
     markers: usize,
-    /// For each frame F, P, Σ w |e|² and the loop error, then its coordinates, then its marker errors.
+    /// For each frame F, P and Σ w |e|², then its coordinates, then its marker errors.
     numbers: Vec<f64>,
+    /// The loop error of each frame; empty where all are 0, as in every model without loops.
+    closures: Vec<f64>,
     ends: Vec<(FrameStatus, u32)>,
 }
 
 /// How many numbers of a frame stand before its coordinates.
-const HEAD: usize = 4;
+const HEAD: usize = 3;
 
 impl Run {
     /// The answers of frames of one tracker.
@@ -23,7 +25,7 @@ impl Run {
         let markers = widest(|a| a.marker_errors.len()).unwrap_or(0);
         let numbers = vec![f64::NAN; answers.len() * (HEAD + coordinates + markers)];
         let ends = vec![(FrameStatus::NoMarkers, 0); answers.len()];
-        let mut run = Self { coordinates, markers, numbers, ends };
+        let mut run = Self { coordinates, markers, numbers, closures: vec![], ends };
         answers.iter().enumerate().for_each(|(frame, answer)| run.set(frame, answer));
         run
     }
@@ -48,7 +50,7 @@ impl Run {
             posture: row[1],
             weighted_squares: row[2],
             marker_errors: row[HEAD + self.coordinates..].to_vec(),
-            closure_error: row[3],
+            closure_error: self.closures.get(frame).copied().unwrap_or(0.0),
             status,
             iterations,
         })
@@ -67,13 +69,14 @@ impl Run {
     fn set(&mut self, frame: usize, answer: &FrameAnswer) {
         let coordinates = self.coordinates;
         self.ends[frame] = (answer.status, answer.iterations);
+        if answer.closure_error != 0.0 {
+            self.closures.resize(self.len(), 0.0);
+        }
+        if let Some(closure) = self.closures.get_mut(frame) {
+            *closure = answer.closure_error;
+        }
         let (head, rest) = self.row_mut(frame).split_at_mut(HEAD);
-        head.copy_from_slice(&[
-            answer.objective,
-            answer.posture,
-            answer.weighted_squares,
-            answer.closure_error,
-        ]);
+        head.copy_from_slice(&[answer.objective, answer.posture, answer.weighted_squares]);
         let (own, errors) = rest.split_at_mut(coordinates);
         own.iter_mut().zip(&answer.coordinates).for_each(|(to, from)| *to = *from);
         errors.iter_mut().zip(&answer.marker_errors).for_each(|(to, from)| *to = *from);
@@ -82,6 +85,7 @@ impl Run {
     /// Leaves out the frames from this one on.
     pub(crate) fn truncate(&mut self, frames: usize) {
         self.numbers.truncate(frames * (HEAD + self.coordinates + self.markers));
+        self.closures.truncate(frames);
         self.ends.truncate(frames);
     }
 
@@ -221,6 +225,12 @@ mod tests {
         packed.set(63, &answer(7));
         assert_eq!((packed.at(63), packed.minimised(63)), (answer(7), 7.5));
         assert_eq!((packed.at(62), packed.at(64)), (answer(62), answer(64)));
+        let closed = |i: usize| FrameAnswer { closure_error: 0.0, ..answer(i) };
+        let list: Vec<FrameAnswer> = (0..5).map(closed).collect();
+        let mut packed = Answers::from(&list[..]);
+        assert_eq!((packed.at(3), packed.runs[0].closures.len()), (closed(3), 0));
+        packed.set(3, &answer(3));
+        assert_eq!((packed.at(2), packed.at(3), packed.at(4)), (closed(2), answer(3), closed(4)));
         assert!(Answers::default().is_empty());
     }
 }

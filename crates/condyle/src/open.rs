@@ -26,7 +26,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 pub use parts::{MotionParts, motion_parts};
-pub use source::{is_standard_input, nameless_is};
+pub use source::{files_read, is_standard_input, nameless_is};
 
 /// A file that could not be used.
 #[derive(Debug)]

@@ -139,10 +139,13 @@ pub(crate) fn includable(name: &str) -> Option<&'static str> {
 /// use std::path::Path;
 /// assert_eq!(shipped::asked_for(Path::new("shoulder")), Some("shoulder"));
 /// assert_eq!(shipped::asked_for(Path::new("shoulder.osim")), None);
+/// assert_eq!(shipped::asked_for(Path::new("-")), None);
 /// ```
 pub fn asked_for(path: &Path) -> Option<&str> {
     let name = path.to_str()?;
     let in_words = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
-    let word = !name.is_empty() && name.chars().all(in_words);
-    (word && !MODELS.is_empty() && !path.is_file()).then_some(name)
+    // `-` alone is standard input; a pipe is as good as a file.
+    let word = name.chars().any(char::is_alphanumeric) && name.chars().all(in_words);
+    let there = path.exists() && !path.is_dir();
+    (word && !MODELS.is_empty() && !there).then_some(name)
 }

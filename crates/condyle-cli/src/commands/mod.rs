@@ -113,6 +113,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
     if let Some(format) = arguments.from.as_deref().and_then(Format::of_ending) {
         open::nameless_is(format);
     }
+    // What is read from here on is not written over.
+    open::files_read();
     match arguments.command {
         Command::Info(command) => command.run(),
         Command::Check(command) => command.run(),

@@ -77,6 +77,8 @@ impl Track {
         let model = Arc::new(warned(&self.model, open::model(&self.model)?));
         let mut request = self.asked.request(&model)?;
         request.threads = self.threads.map(usize::from);
+        // Model and setup may have named further files.
+        output::check_unread(places.iter().flat_map(Places::all).chain(self.report.as_deref()))?;
         let made_from = match places.iter().any(|places| places.report.is_some()) {
             true => done::of_run(&self.model, &model, &request, zeros(self.asked.zeros), format),
             false => Digest::default(),

@@ -91,21 +91,32 @@ pub(super) enum Identity {
 }
 
 impl Identity {
-    /// `None` of what is no file.
+    /// Of a file that is read, be it through standard input; `None` of what is no file.
+    pub(super) fn of_input(path: &Path) -> Option<Self> {
+        let standard = path == Path::new("-");
+        let path = if standard { Path::new("/dev/stdin") } else { path };
+        let known = std::fs::metadata(path).ok().filter(Metadata::is_file)?;
+        Some(Self::of_known(path, Some(&known)))
+    }
+
+    /// Of a file that is written, which may not be there yet; `None` of what is no file.
     pub(super) fn of(path: &Path) -> Option<Self> {
         let Destination::File { place, existing } = Destination::of(path).ok()? else {
             return None;
         };
+        Some(Self::of_known(&place, existing.as_ref()))
+    }
+
+    fn of_known(place: &Path, known: Option<&Metadata>) -> Self {
         #[cfg(unix)]
-        if let Some(known) = existing {
+        if let Some(known) = known {
             use std::os::unix::fs::MetadataExt;
-            return Some(Self::Node(known.dev(), known.ino()));
+            return Self::Node(known.dev(), known.ino());
         }
         #[cfg(not(unix))]
-        let _ = existing;
-        let folder = std::fs::canonicalize(super::temporary::folder_of(&place));
-        Some(Self::Place(
-            folder.map_or(place.clone(), |f| f.join(place.file_name().unwrap_or_default())),
-        ))
+        let _ = known;
+        let folder = std::fs::canonicalize(super::temporary::folder_of(place));
+        let name = place.file_name().unwrap_or_default();
+        Self::Place(folder.map_or_else(|_| place.to_owned(), |folder| folder.join(name)))
     }
 }

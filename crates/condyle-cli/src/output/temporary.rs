@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::fs::{File, Metadata, OpenOptions, TryLockError};
 use std::hash::{BuildHasher, RandomState};
-use std::io::{self, Seek, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -73,12 +73,27 @@ impl Temporary {
         Ok(())
     }
 
-    /// Overwrites the file that is in a place.
+    /// Overwrites the file that is in a place. What it grows by is written first: on a full disk the old
+    /// content stays.
     pub(super) fn copy_to(mut self, place: &Path) -> io::Result<()> {
-        self.file.rewind()?;
         let mut shared = OpenOptions::new().write(true).open(place)?;
-        let length = io::copy(&mut self.file, &mut shared)?;
-        shared.set_len(length)?;
+        let (old, new) = (shared.metadata()?.len(), self.file.metadata()?.len());
+        if new > old
+            && let Err(error) = self.copy_from(old, u64::MAX, &mut shared)
+        {
+            shared.set_len(old)?;
+            return Err(error);
+        }
+        self.copy_from(0, old, &mut shared)?;
+        shared.set_len(new)?;
+        shared.sync_all()
+    }
+
+    /// Copies at most so many bytes from a place on to the same place of another file, down to the disk.
+    fn copy_from(&mut self, start: u64, most: u64, shared: &mut File) -> io::Result<()> {
+        self.file.seek(SeekFrom::Start(start))?;
+        shared.seek(SeekFrom::Start(start))?;
+        io::copy(&mut Read::take(&self.file, most), shared)?;
         shared.sync_all()
     }
 }

@@ -196,3 +196,60 @@ fn no_input_is_overwritten() {
         .output();
     assert!(run.is_ok_and(|run| run.status.success()));
 }
+
+#[test]
+fn no_file_that_an_input_names_is_overwritten() {
+    let (folder, _) = with_motion("output-named");
+    folder.condyle(&["convert", "leg.osim", "part.toml"]).expect(0);
+    folder.write("walk.trc", leg::trc(3, |_, _| true));
+    let model = "condyle = 1\nkind = \"model\"\nname = \"whole\"\ninclude = [\"part.toml\"]\n";
+    let setup = "condyle = 1\nkind = \"setup\"\nnames = \"names.toml\"\n";
+    let names = "condyle = 1\nkind = \"names\"\n[names]\nX = \"HIP\"\n";
+    folder.write("whole.toml", model).write("setup.toml", setup).write("names.toml", names);
+    let part = folder.read("part.toml");
+    for arguments in [
+        &["convert", "whole.toml", "part.toml"][..],
+        &["track", "whole.toml", "walk.trc", "-o", "part.toml", "--to", "mot"],
+        &[
+            "track",
+            "leg.osim",
+            "walk.trc",
+            "--setup",
+            "setup.toml",
+            "-o",
+            "names.toml",
+            "--to",
+            "mot",
+        ],
+        &["fk", "whole.toml", "-o", "part.toml"],
+    ] {
+        let said = folder.condyle(arguments).refused();
+        assert!(said.contains("this file is also an input"), "{said}");
+    }
+    let said = shell(&folder, "condyle convert - a.mot --to csv < a.mot").refused();
+    assert!(said.contains("a.mot: this file is also an input (-)"), "{said}");
+    assert_eq!((folder.read("part.toml"), folder.read("names.toml")), (part, names.to_owned()));
+    assert_eq!(folder.read("a.mot"), leg_motion(40));
+}
+
+/// On a disk of its own of 64 kilobytes, which not every user can have.
+#[test]
+fn a_full_disk_leaves_a_file_of_two_names_as_it_was() {
+    let (folder, _) = with_motion("output-full-shared");
+    folder.write("long.mot", leg_motion(1000)).write("disk/.keep", "");
+    let script = "
+        mount -t tmpfs -o size=64k none disk 2> /dev/null || exit 77
+        echo old > disk/a.csv; ln disk/a.csv disk/b.csv; head -c 20000 /dev/zero > disk/rest
+        condyle convert long.mot disk/a.csv; echo $?
+        cat disk/b.csv; stat -c %h disk/a.csv; ls -A disk";
+    // A disk on which the whole result fits once but not twice.
+    let script = format!("exec unshare --mount --map-root-user sh -c '{script}'");
+    let run = shell(&folder, &script);
+    if run.code != 0 {
+        eprintln!("not tested: this user can mount no disk");
+        return;
+    }
+    let said = run.err.clone();
+    assert!(said.starts_with("error: disk/a.csv: No space left on device"), "{said}");
+    assert_eq!(run.expect(0), "2\nold\n2\na.csv\nb.csv\nrest\n");
+}

@@ -24,6 +24,7 @@ fn each_input_can_come_through_a_pipe() {
         ("condyle fk <(cat leg.osim) --motion <(cat walk.mot)", &posed),
         ("mkfifo f.mot; cat walk.mot > f.mot & condyle fk leg.osim --motion f.mot", &posed),
         ("condyle fk leg.osim --pose - < p.json", &one),
+        ("mkfifo bare; cat leg.osim > bare & condyle fk bare --pose p.json", &one),
         (
             "condyle convert - - --to csv --model leg.osim < p.json > /dev/null && condyle fk leg.osim --pose p.json",
             &one,
@@ -34,6 +35,16 @@ fn each_input_can_come_through_a_pipe() {
     let text = shell(&folder, "cat walk.trc | condyle track leg.osim - -o - --from trc").expect(0);
     let (_, rows) = text.split_once("endheader").expect("a motion");
     assert!(folder.read("walk.mot").ends_with(rows));
+}
+
+#[test]
+fn a_document_comes_through_a_pipe_as_it_was_written() {
+    let folder = Folder::with_leg("stdin-document");
+    folder.condyle(&["convert", "leg.osim", "leg.toml"]).expect(0);
+    let text = format!("# By hand.\n{}", folder.read("leg.toml"));
+    folder.write("leg.toml", &text);
+    let found = shell(&folder, "condyle convert - - --to toml < leg.toml").expect(0);
+    assert_eq!(found, text);
 }
 
 #[test]

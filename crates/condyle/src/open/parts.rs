@@ -54,6 +54,7 @@ impl Parts {
         let mut reader = BufReader::with_capacity(1 << 16, file);
         let head = head(format.id, &mut reader)?;
         let stated = stated(format.id, &head);
+        super::source::list(path);
         let path = path.to_owned();
         Some(Self { path, format, reader, head, stated, last: vec![], rows: 0 })
     }

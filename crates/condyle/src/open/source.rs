@@ -5,9 +5,9 @@ use condyle_diagnostics::Error;
 use condyle_formats::Format;
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
-use std::sync::OnceLock;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, OnceLock};
 
 /// The largest file that is read, in bytes.
 const LARGEST: u64 = 1 << 30;
@@ -19,6 +19,25 @@ static NAMELESS: OnceLock<&'static Format> = OnceLock::new();
 /// devices. The first call counts; without one the content tells.
 pub fn nameless_is(format: &'static Format) {
     let _ = NAMELESS.set(format);
+}
+
+/// The files that were read, once somebody asked for the list.
+static LISTED: Mutex<Option<Vec<PathBuf>>> = Mutex::new(None);
+
+/// The files that were read since the first call of this function, which answers with none: those that
+/// were named and those that they name, such as the includes of a document or the tasks of a setup.
+pub fn files_read() -> Vec<PathBuf> {
+    LISTED.lock().map(|mut listed| listed.get_or_insert_default().clone()).unwrap_or_default()
+}
+
+/// Puts a file on the list of those that were read.
+pub(super) fn list(path: &Path) {
+    if let Ok(mut listed) = LISTED.lock()
+        && let Some(files) = listed.as_mut()
+        && !files.iter().any(|file| file == path)
+    {
+        files.push(path.to_owned());
+    }
 }
 
 /// Whether a path is standard input.
@@ -48,6 +67,7 @@ pub(super) fn bytes(path: &Path) -> Result<Vec<u8>, OpenError> {
     let fail = |error| failed(path, Cause::Io(error));
     let file = File::open(path).map_err(fail)?;
     let size = file.metadata().map_err(fail)?.len();
+    list(path);
     limited(path, file, size, LARGEST)
 }
 

@@ -34,6 +34,9 @@ pub struct Job<'a> {
     left_out: LeftOut,
 }
 
+/// How many chunks are judged before their trust is put together.
+const JUDGED: usize = 1024;
+
 /// Markers that both sides have and that are not used all the same.
 #[derive(Clone, Debug, Default)]
 struct LeftOut {
@@ -249,16 +252,26 @@ impl<'a> Job<'a> {
     fn trust(&self, recorded: &dyn Recorded, answers: &Answers) -> Vec<Trust> {
         let chunks = sequence::cut(answers.len());
         let tracker = &*self.tracker;
-        let judge = |index: usize, scratch: &mut Scratch| -> Vec<Trust> {
+        let judge = |chunk: &sequence::Chunk, scratch: &mut Scratch| -> Vec<Trust> {
             let mut seen = vec![];
-            let frames = chunks[index].frames.clone();
-            let trust = frames.flat_map(|frame| {
+            let trust = chunk.frames.clone().flat_map(|frame| {
                 recorded.positions(frame, &mut seen);
                 tracker.trust(scratch, &seen, frame, &answers.at(frame))
             });
             trust.collect()
         };
-        in_parallel(self.threads, chunks.len(), || Scratch::new(tracker), judge).concat()
+        let mut trust = vec![];
+        for chunks in chunks.chunks(JUDGED) {
+            let judge = |index: usize, scratch: &mut Scratch| judge(&chunks[index], scratch);
+            let parts =
+                in_parallel(self.threads, chunks.len(), || Scratch::new(tracker), judge).concat();
+            if trust.is_empty() {
+                let frames: usize = chunks.iter().map(|chunk| chunk.frames.len()).sum();
+                trust.reserve_exact(parts.len() / frames.max(1) * answers.len());
+            }
+            trust.extend(parts);
+        }
+        trust
     }
 
     fn pass(

@@ -232,13 +232,16 @@ impl<'a> Trial<'a> {
         let seen = |frame: usize| errors(frame).filter(|e| e.is_finite()).count();
         let frames = 0..tracking.answers.len();
         let most = frames.clone().map(seen).max()?;
-        let good: Vec<usize> = frames.filter(|&frame| 2 * seen(frame) >= most.max(1)).collect();
-        if good.is_empty() {
+        let good = || frames.clone().filter(|&frame| 2 * seen(frame) >= most.max(1));
+        let of = good().count();
+        let count = FRAMES.min(of);
+        let at = |i: usize| (2 * i + 1) * of / (2 * count);
+        let mut wanted = (0..count).map(at).peekable();
+        let picked = good().enumerate().filter(|(place, _)| wanted.next_if_eq(place).is_some());
+        let numbers: Vec<usize> = picked.map(|(_, frame)| frame).collect();
+        if numbers.is_empty() {
             return None;
         }
-        let count = FRAMES.min(good.len());
-        let at = |i: usize| good[(2 * i + 1) * good.len() / (2 * count)];
-        let numbers: Vec<usize> = (0..count).map(at).collect();
         let frame = |&number: &usize| tracking.frames.start + number;
         let sample = Recording {
             labels: recording.labels.clone(),

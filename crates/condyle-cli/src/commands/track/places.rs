@@ -16,6 +16,12 @@ pub(super) struct Places {
     pub(super) report: Option<PathBuf>,
 }
 
+impl Places {
+    pub(super) fn all(&self) -> impl Iterator<Item = &Path> {
+        [&self.motion, &self.errors, &self.report].into_iter().flatten().map(PathBuf::as_path)
+    }
+}
+
 /// What a path of an argument means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
@@ -117,8 +123,8 @@ pub(super) fn plan(asked: &Track) -> Result<(Vec<Places>, &'static Format), Fail
             Places { motion: motion_place, errors: errors_place, report }
         })
         .collect();
-    let outputs = places.iter().flat_map(|p| [&p.motion, &p.errors, &p.report]).flatten();
-    let outputs: Vec<&Path> = outputs.chain(&asked.report).map(PathBuf::as_path).collect();
+    let outputs = places.iter().flat_map(Places::all).chain(asked.report.as_deref());
+    let outputs: Vec<&Path> = outputs.collect();
     let inputs = asked.trials.iter().chain([&asked.model]).chain(asked.asked.files());
     let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
     output::check_distinct(&inputs, &outputs)?;
