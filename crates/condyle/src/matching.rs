@@ -190,6 +190,14 @@ fn choose<'a, 'l>(
     warnings: &mut Vec<Diagnostic>,
 ) -> Result<Option<&'a Prefix<'l>>, Error> {
     let Some(most) = prefixes.iter().map(|p| p.count).max() else { return Ok(None) };
+    let bare = prefixes.iter().find(|p| p.prefix.is_empty());
+    let mut subjects = prefixes.iter().filter(|p| !p.prefix.is_empty());
+    // Few labels with a prefix beside many without one are of the same person, if nobody else is there.
+    if let (Some(bare), Some(one), None) = (bare, subjects.next(), subjects.next())
+        && bare.labels.iter().zip(&one.labels).all(|(a, b)| a.is_none() || b.is_none())
+    {
+        return Ok(Some(one));
+    }
     let fitting: Vec<&Prefix<'l>> = prefixes.iter().filter(|p| 2 * p.count >= most).collect();
     let named = || fitting.iter().copied().filter(|p| !p.prefix.is_empty());
     let said = |p: &Prefix<'_>| format!("{} ({} markers)", p.subject(), p.count);

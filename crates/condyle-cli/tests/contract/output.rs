@@ -160,7 +160,7 @@ fn names_from_files_move_no_cursor() {
     let folder = Folder::with_leg("output-escapes");
     folder.write("walk.trc", leg::trc(3, |_, _| true).replace("HIP", "\u{1b}[31mred:HIP"));
     let run = folder.condyle(&["track", "leg.osim", "walk.trc"]);
-    assert!(run.err.contains(r"marker `\u{1b}[31mred:HIP` is taken"), "{}", run.err);
+    assert!(run.err.contains(r"without their prefix `\u{1b}[31mred:`"), "{}", run.err);
     assert!(!run.err.contains('\u{1b}'), "{}", run.err);
     let text = folder.condyle(&["info", "walk.trc"]).expect(0);
     assert!(text.contains(r"\u{1b}[31mred:HIP") && !text.contains('\u{1b}'), "{text}");

@@ -12,7 +12,7 @@ use condyle_model::component::{Contact, ContactPair, Gliding};
 
 impl ModelReader<'_> {
     pub(super) fn contact(&mut self, fields: &Fields<'_>) -> Option<Law> {
-        let pose = self.rigid(fields);
+        let pose = self.frame(fields, FRAME);
         let radii = self.required_vector(fields, "radii", "three half axes in metres");
         let axis = self.required_vector(fields, "axis", DIRECTION);
         let pairs = self.contact_pairs(fields);
@@ -52,25 +52,9 @@ impl ModelReader<'_> {
             let (message, help) = said.split_once(": ").unwrap_or((&said, "change these numbers"));
             self.texts.error(*spot, "model/contact", message, help);
         }
-        let law = Gliding::new(pose?, radii?, axis?, pairs?.1).ok()?;
+        let law = Gliding::new(pose, radii?, axis?, pairs?.1).ok()?;
         let before = fields.get("before").is_some();
         Some(Law::Contact(Contact { before, most_gap: most_gap?, law }))
-    }
-
-    /// A frame without stretch or shear.
-    fn rigid(&mut self, fields: &Fields<'_>) -> Option<Affine> {
-        let frame = self.frame(fields, FRAME);
-        let m = frame.linear;
-        let product = m.transpose() * m;
-        let off = (0..9).map(|i| product.at(i / 3, i % 3) - f64::from(u8::from(i % 4 == 0)));
-        if off.into_iter().all(|x| x.abs() < 1e-6) && m.determinant() > 0.0 {
-            return Some(frame);
-        }
-        // A matrix with the wrong number of rows was reported and is the identity here.
-        let spot = fields.get("matrix").map_or(fields.spot, |node| node.spot);
-        let help = "give rows of length 1 at right angles, or three angles as `turn`";
-        self.texts.error(spot, "model/rotation", "`matrix` is not a rotation", help);
-        None
     }
 
     fn contact_pairs<'t>(&mut self, fields: &Fields<'t>) -> Option<(&'t Node, Vec<ContactPair>)> {
