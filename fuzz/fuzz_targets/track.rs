@@ -38,7 +38,7 @@ fuzz_target!(|data: &[u8]| {
     let robust = data.len() % 2 == 1;
     let request = Request { threads: Some(1), robust, ..Request::default() };
     let Ok(tracking) = track(&ARM, &recording, &request, &mut |_, _| {}) else { return };
-    for answer in &tracking.answers {
+    for answer in tracking.answers.iter() {
         assert!(answer.coordinates.iter().all(|x| x.is_finite()), "{answer:?}");
         let errors = answer.marker_errors.iter();
         assert!(errors.clone().all(|e| e.is_nan() || *e >= 0.0));
@@ -46,6 +46,6 @@ fuzz_target!(|data: &[u8]| {
             assert!(answer.objective.is_finite());
         }
     }
-    assert_eq!(tracking.answers.len(), tracking.motion.frames.len());
+    assert_eq!(tracking.answers.len(), tracking.motion().frames.len());
     let _ = tracking.report(&ARM);
 });
