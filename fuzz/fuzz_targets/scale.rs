@@ -21,7 +21,9 @@ static ARM: LazyLock<Model> = LazyLock::new(|| {
     b.hinge("elbow", fore, "flexion", Vec3::Z);
     b.size_group("upper", vec![upper]);
     b.size_group("fore", vec![fore]);
-    for (name, at) in [("A", [0.02, -0.05, 0.01]), ("B", [0.0, -0.2, 0.03]), ("C", [0.03, -0.28, 0.0])] {
+    for (name, at) in
+        [("A", [0.02, -0.05, 0.01]), ("B", [0.0, -0.2, 0.03]), ("C", [0.03, -0.28, 0.0])]
+    {
         b.marker(name, Some(upper), at.into());
     }
     for (name, at) in [("D", [0.03, -0.05, 0.0]), ("E", [0.0, -0.2, 0.02])] {
