@@ -58,23 +58,16 @@ fn contradiction(
         ];
         for (lower, upper, outer) in pairs {
             let (Some(lower), Some(upper)) = (lower, upper) else { continue };
+            if lower - upper <= 10.0 * tolerance(kind) {
+                continue;
+            }
             // Between its two bounds first: a range is the simpler thing to widen.
             if worst.is_none_or(|(_, l, u, known)| (!outer, lower - upper) > (!known, l - u)) {
                 worst = Some((d, lower, upper, outer));
             }
-            if !outer
-                && lower - upper > 0.0
-                && worst.is_some_and(|(_, l, u, _)| lower - upper > l - u)
-            {
-                worst = Some((d, lower, upper, false));
-            }
         }
     }
     let (d, lower, upper, outer) = worst?;
-    let gap = lower - upper;
-    if gap.is_nan() || gap <= 10.0 * tolerance(kind) {
-        return None;
-    }
     let what = match outer {
         true => "its bound and the range of what it bounds exclude each other",
         false => "its bounds cross",

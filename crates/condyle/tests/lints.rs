@@ -111,6 +111,11 @@ fn bounds_that_cross() {
     let said =
         found("lift = { range = [-30, 45] }", "lift = { range = [-30, 15] }", "lint/bounds-cross");
     assert!(said.message.contains("the lower is 23° and the upper 15°"), "{said}");
+    // Also where there is an upper bound that does not cross the lower one.
+    let text =
+        ARM.replace(lower, &format!("{lower}\nupper = 45")).replace("[-30, 45]", "[-30, 15]");
+    let found = findings(&text);
+    assert!(found.iter().any(|finding| finding.code == "lint/bounds-cross"), "{found:?}");
 }
 
 #[test]
