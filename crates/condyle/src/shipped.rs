@@ -43,8 +43,10 @@ const MODELS: &[(&str, &str)] = &[];
 
 /// Texts that models include and that are none alone, by the path that is included.
 #[cfg(feature = "document")]
-const PARTS: &[(&str, &str)] =
-    &[("parts/human-markers.toml", include_str!("../models/parts/human-markers.toml"))];
+const PARTS: &[(&str, &str)] = &[
+    ("parts/hand.toml", include_str!("../models/parts/hand.toml")),
+    ("parts/human-markers.toml", include_str!("../models/parts/human-markers.toml")),
+];
 
 /// Name and text of every shipped table of names, by name.
 #[cfg(feature = "document")]
