@@ -265,6 +265,7 @@
 
 #[cfg(feature = "formats")]
 pub mod encode;
+mod figure;
 pub mod legal;
 pub mod matching;
 #[cfg(feature = "formats")]
@@ -283,6 +284,7 @@ pub use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Subject}
 #[cfg(feature = "formats")]
 pub use condyle_formats as formats;
 pub use condyle_math as math;
+pub use condyle_mesh as mesh;
 pub use condyle_model::{
     self as model, Component, Coordinate, CoordinateId, CoordinateKind, Jacobian, Law, Mode, Model,
     ModelBuilder, Pose, Program, Range, SegmentId, Signal,
@@ -291,6 +293,7 @@ pub use condyle_motion::{
     self as motion, AngleUnit, Interpolation, Keys, LengthUnit, Motion, Observed, Posture,
     Recording, Table, Zeros,
 };
+pub use figure::{Figure, Part};
 
 /// The README's examples, run as tests.
 #[cfg(doctest)]

@@ -6,6 +6,7 @@
 //! joint in the parent      translation · s(parent)
 //! joint in the segment     translation · s(segment)
 //! marker, end of a loop    point · s(its segment)
+//! shape                    every length · s(its segment)
 //! length inside a joint    · s(parent)
 //! ```
 //!
@@ -96,6 +97,15 @@ impl Model {
         }
         for marker in &mut model.markers {
             marker.point = marker.point * of(marker.segment);
+        }
+        for shape in &mut model.shapes {
+            let factor = of(Some(shape.segment));
+            if factor != 1.0 {
+                shape.form = shape.form.grown(factor);
+            }
+            if let Some((segment, point)) = &mut shape.until {
+                *point = *point * of(Some(*segment));
+            }
         }
         let of_component: Vec<f64> =
             self.joints_of_components().iter().map(|j| j.map_or(1.0, of)).collect();

@@ -1,6 +1,7 @@
 //! Writes any model, with everything expanded.
 
 mod component;
+mod surface;
 
 use super::mirror::escaped;
 use condyle_math::function::{Curve, Function, FunctionOfSeveral};
@@ -103,6 +104,9 @@ impl Writer<'_> {
             }
             line!(self, "at = {}", vector(marker.point));
         }
+        for shape in model.shapes() {
+            self.shape(shape);
+        }
         self.closures();
         for posture in &model.postures()[short..] {
             line!(self, "\n[posture.{}]", key(&posture.name));
@@ -179,6 +183,9 @@ impl Writer<'_> {
         if held {
             let side = |v: Option<f64>| v.map_or("\"none\"".to_owned(), number);
             line!(self, "range = [{}, {}]", side(lower), side(upper));
+        }
+        if let Some([low, high]) = c.typical {
+            line!(self, "typical = [{}, {}]", number(low), number(high));
         }
         if enforced != held {
             line!(self, "enforced = {enforced}");
