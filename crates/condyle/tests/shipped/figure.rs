@@ -45,8 +45,9 @@ impl Figure {
     #[track_caller]
     pub(crate) fn of(text: &str) -> Self {
         let include = &mut |file: &str| {
-            let shipped = file.strip_suffix(".toml").and_then(shipped::text);
-            shipped.map(str::to_owned).ok_or_else(|| format!("`{file}` is not shipped"))
+            let models = concat!(env!("CARGO_MANIFEST_DIR"), "/models");
+            std::fs::read_to_string(std::path::Path::new(models).join(file))
+                .map_err(|_| format!("`{file}` is not shipped"))
         };
         let read = document::read(text, include).expect("a model");
         assert_eq!(read.warnings, []);
