@@ -18,6 +18,7 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
             findings.push(crossing(subject, id, lower, upper));
             continue;
         }
+        findings.extend(typical(subject, id));
         let odd = size(subject, id);
         let dummy = odd.is_some();
         findings.extend(odd);
@@ -36,6 +37,30 @@ fn crossing(subject: &Inspected<'_>, id: CoordinateId, lower: f64, upper: f64) -
         format!("`{key}` has its lower limit {lower} above its upper limit {upper}"),
         "exchange the two",
     )
+}
+
+/// What people reach on average is within what a body can do.
+fn typical(subject: &Inspected<'_>, id: CoordinateId) -> Option<Diagnostic> {
+    let coordinate = subject.model.coordinate(id);
+    let [low, high] = coordinate.typical?;
+    let range = coordinate.range;
+    let allowed = tolerance(coordinate.kind);
+    let beyond = range.lower.is_some_and(|lower| low < lower - allowed)
+        || range.upper.is_some_and(|upper| high > upper + allowed);
+    let key = subject.key(id);
+    beyond.then(|| {
+        finding(
+            Severity::Warning,
+            "lint/typical-beyond-range",
+            [Subject::Coordinate(key.clone())],
+            format!(
+                "people reach {} to {} in `{key}`, which its range does not allow",
+                subject.shown(id, low),
+                subject.shown(id, high)
+            ),
+            "widen `range`: it says what a body can do, `typical` what people reach on average",
+        )
+    })
 }
 
 /// Whether limits look like degrees: too large for a joint, whole numbers, and at most 360.

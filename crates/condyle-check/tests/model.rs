@@ -62,6 +62,21 @@ fn limits_that_cross() {
 }
 
 #[test]
+fn people_reach_what_the_range_allows() {
+    let hinge = |typical: [f64; 2]| {
+        let mut b = ModelBuilder::new("hinge");
+        let segment = b.segment("arm", None);
+        let (_, flexion) = b.hinge("elbow", segment, "flexion", Vec3::Z);
+        b.coordinate_mut(flexion).range = degrees(0.0, 140.0);
+        b.coordinate_mut(flexion).typical = Some(typical.map(f64::to_radians));
+        b
+    };
+    let finding = only(hinge([0.0, 145.0]), Severity::Warning, "lint/typical-beyond-range");
+    assert!(finding.message.contains("0° to 145° in `flexion`"), "{}", finding.message);
+    sound(hinge([0.0, 140.0]));
+}
+
+#[test]
 fn limits_in_degrees() {
     let finding = only(hinge(Range::new(-10.0, 140.0), 0.0), Severity::Warning, "lint/degrees");
     assert!(finding.message.contains("-10 to 140 radians"), "{}", finding.message);

@@ -55,6 +55,21 @@ fn near(found: f64, expected: f64) {
     assert!((found - expected).abs() < 1e-12, "found {found}, expected {expected}");
 }
 
+/// A knee that people bend by 110 degrees on average, of the 120 that it can.
+#[test]
+fn what_few_people_reach_is_a_note() {
+    let mut b = leg();
+    let knee = b.clone().build().expect("a model").find_coordinate("flexion").expect("a knee");
+    b.coordinate_mut(knee).typical = Some([0.0, 110f64.to_radians()]);
+    let rows: [&[f64]; 4] = [&[0.9, 105.0], &[0.9, 112.0], &[0.9, 118.0], &[0.9, 110.0]];
+    let check = check(&model(b), &motion(&["height", "flexion"], &rows));
+    assert_eq!(codes(&check), [(Severity::Note, "motion/uncommon")]);
+    let found = check.uncommon[0];
+    assert_eq!((found.frames, found.frame), (2, 2));
+    near(found.by, 8f64.to_radians());
+    assert!(check.findings[0].message.contains("in 2 frames; most in frame 2 (0.02 s): 118°"));
+}
+
 #[test]
 fn a_motion_that_holds() {
     let rows: [&[f64]; 3] = [&[0.9, 0.0], &[1.0, 60.0], &[0.95, 120.0]];

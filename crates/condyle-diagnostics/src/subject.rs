@@ -31,6 +31,8 @@ pub enum Subject {
     },
     /// A marker of a model, or a label of a recording.
     Marker(String),
+    /// What a bone looks like.
+    Shape(String),
     /// A loop.
     Closure(String),
     /// A posture term.
@@ -57,6 +59,7 @@ impl Subject {
             | Self::Coordinate(name)
             | Self::Component { name, .. }
             | Self::Marker(name)
+            | Self::Shape(name)
             | Self::Closure(name)
             | Self::Posture(name)
             | Self::SizeGroup(name)
@@ -75,6 +78,7 @@ impl fmt::Display for Subject {
                 return write!(f, "component `{name}` of joint set `{joint_set}`");
             }
             Self::Marker(_) => "marker",
+            Self::Shape(_) => "shape",
             Self::Closure(_) => "closure",
             Self::Posture(_) => "posture",
             Self::SizeGroup(_) => "size group",

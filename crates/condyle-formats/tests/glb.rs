@@ -1,8 +1,10 @@
 //! Scenes, written and read again with another library.
 
 use condyle_formats::glb::{
-    Finish, LocalPose, MarkerTrack, Scene, SceneNode, Shape, Track, UpAxis, write,
+    Finish, LocalPose, MarkerTrack, Scene, SceneNode, Surface, Track, UpAxis, write,
 };
+use condyle_math::{Affine, Mat3, Vec3};
+use condyle_mesh::{Ball, Block, Form, Spindle};
 use gltf::animation::util::ReadOutputs;
 
 /// A turn about z by so many radians, at so much along x.
@@ -14,23 +16,29 @@ fn pose(angle: f64, x: f64) -> LocalPose {
 
 /// An arm of two bones that bends and slides over four frames, with two recorded markers.
 fn arm() -> Scene {
-    let node = |name: &str, parent| SceneNode {
-        name: name.into(),
-        parent,
-        shapes: vec![
-            Shape::Bone { to: [0.0, -0.3, 0.0] },
-            Shape::Ball { at: [0.0; 3], radius: 0.02, finish: Finish::Joint },
-        ],
-        ..SceneNode::default()
-    };
+    let node = |name: &str, parent| SceneNode { name: name.into(), parent, ..SceneNode::default() };
+    let (turn, down) = (Mat3::IDENTITY, Vec3::new(0.0, -0.3, 0.0));
+    let bone = Form::Spindle(Spindle { from: Vec3::ZERO, to: down });
+    let joint = Form::Ball(Ball { at: Vec3::ZERO, radii: Vec3::new(0.02, 0.02, 0.02), turn });
+    let palm = Form::Block(Block {
+        at: Vec3::new(0.0, -0.35, 0.0),
+        size: Vec3::new(0.05, 0.1, 0.02),
+        turn,
+    });
+    let surface =
+        |form: &Form, finish, nodes| Surface { mesh: form.mesh(), finish, nodes, weights: vec![] };
     let mut hand = node("hand", Some(1));
     hand.rest.translation = [0.0, -0.3, 0.0];
-    let size = [0.05, 0.1, 0.02];
-    hand.shapes = vec![Shape::Box { at: [0.0, -0.05, 0.0], size, finish: Finish::Accent }];
+    hand.bound = Affine::from_translation(down);
     Scene {
         name: "arm".into(),
         up: UpAxis::Z,
         nodes: vec![node("upper", None), node("fore", Some(0)), hand],
+        surfaces: vec![
+            surface(&bone, Finish::Bone, [0, 0]),
+            surface(&joint, Finish::Joint, [1, 1]),
+            surface(&palm, Finish::Accent, [2, 2]),
+        ],
         times: vec![2.0, 2.5, 3.0, 3.5],
         tracks: vec![
             // The sign of the third rotation is turned: the same turn, another quaternion.
@@ -73,7 +81,7 @@ fn the_tree_is_that_of_the_scene() {
     assert_eq!(names(&root), ["upper", "elbow"]);
     let upper = root.children().next().unwrap();
     assert_eq!(names(&upper), ["fore"]);
-    assert_eq!(document.nodes().count(), 5);
+    assert_eq!(document.nodes().count(), 6);
     let materials: Vec<_> = document.materials().filter_map(|m| m.name()).collect();
     assert_eq!(materials, ["bone", "joint", "accent", "marker"]);
 }
@@ -214,7 +222,7 @@ fn repeated_times_are_dropped() {
 #[test]
 fn faults_name_the_node() {
     type Spoil = fn(&mut Scene);
-    let cases: [(&str, &str, Spoil); 11] = [
+    let cases: [(&str, &str, Spoil); 14] = [
         ("glb/parent", "node 0 `upper` has parent 2", |s| s.nodes[0].parent = Some(2)),
         ("glb/track", "a track moves node 7", |s| s.tracks[0].node = 7),
         ("glb/track", "two tracks move `upper`", |s| s.tracks[0].node = 0),
@@ -229,9 +237,13 @@ fn faults_name_the_node() {
         ("glb/pose", "marker `elbow` is not finite", |s| {
             s.markers[0].positions[0] = Some([f64::NAN; 3]);
         }),
-        ("glb/shape", "`hand` has Ball", |s| {
-            s.nodes[2].shapes =
-                vec![Shape::Ball { at: [0.0; 3], radius: 0.0, finish: Finish::Bone }];
+        ("glb/surface", "surface 2 hangs on node 3", |s| s.surfaces[2].nodes = [2, 3]),
+        ("glb/surface", "surface 1 has", |s| s.surfaces[1].weights = vec![0.5]),
+        ("glb/surface", "surface 0 is not finite", |s| {
+            s.surfaces[0].mesh.positions[3].x = f64::NAN;
+        }),
+        ("glb/surface", "surface 2 hangs on `hand`, which has no size", |s| {
+            s.nodes[2].bound.linear = Mat3::from_columns(Vec3::X, Vec3::Y, Vec3::X);
         }),
     ];
     for (code, said, spoil) in cases {
@@ -240,5 +252,54 @@ fn faults_name_the_node() {
         let error = write(&scene).unwrap_err();
         assert_eq!(error.code(), code, "{said}");
         assert!(error.to_string().starts_with(said), "{error}");
+    }
+}
+
+/// Where a skinned corner is shown, by glTF's own formula.
+#[test]
+fn a_surface_goes_with_the_nodes_that_carry_it() {
+    let mut scene = arm();
+    // A band from the forearm to the hand: its corners go with both, the lower the more with the hand.
+    let ends =
+        Form::Spindle(Spindle { from: Vec3::new(0.0, -0.2, 0.0), to: Vec3::new(0.0, -0.4, 0.0) });
+    let mesh = ends.mesh();
+    let weights: Vec<f64> = mesh.positions.iter().map(|p| (-0.2 - p.y) / 0.2).collect();
+    let surface = Surface { mesh, finish: Finish::Cartilage, nodes: [1, 2], weights };
+    scene.surfaces = vec![surface.clone()];
+    // The hand is turned at rest, and the surface is given where it is not.
+    scene.nodes[2].rest = LocalPose { translation: [0.0, -0.3, 0.0], ..pose(0.8, 0.0) };
+    scene.up = UpAxis::Y;
+    scene.tracks.clear();
+    let (document, bin) = reread(&scene);
+    let skin = document.skins().next().unwrap();
+    let matrix = |m: [[f32; 4]; 4]| {
+        let [x, y, z, t] = m.map(|[a, b, c, _]| Vec3::new(a.into(), b.into(), c.into()));
+        Affine::new(Mat3::from_columns(x, y, z), t)
+    };
+    let reader = skin.reader(|_| Some(bin.as_slice()));
+    let back: Vec<Affine> = reader.read_inverse_bind_matrices().unwrap().map(matrix).collect();
+    let joints: Vec<&str> = skin.joints().map(|j| j.name().unwrap()).collect();
+    assert_eq!(joints, ["upper", "fore", "hand"]);
+    let turned = Affine::new(Mat3::rotation_z(0.8), Vec3::new(0.0, -0.3, 0.0));
+    let shown = [Affine::IDENTITY, Affine::IDENTITY, turned];
+    let primitive = document.meshes().find(|m| m.name() == Some("arm")).unwrap();
+    let primitive = primitive.primitives().next().unwrap();
+    let reader = primitive.reader(|_| Some(bin.as_slice()));
+    let positions: Vec<[f32; 3]> = reader.read_positions().unwrap().collect();
+    let joints: Vec<[u16; 4]> = reader.read_joints(0).unwrap().into_u16().collect();
+    let weights: Vec<[f32; 4]> = reader.read_weights(0).unwrap().into_f32().collect();
+    for (corner, p) in positions.iter().enumerate() {
+        let p = Vec3::from(p.map(f64::from));
+        let mut found = Vec3::ZERO;
+        for k in 0..4 {
+            let joint = usize::from(joints[corner][k]);
+            found += (shown[joint] * (back[joint] * p)) * f64::from(weights[corner][k]);
+        }
+        let w = surface.weights[corner];
+        // The forearm has not moved; the hand turned about its own joint.
+        let moved =
+            Mat3::rotation_z(0.8) * (p - Vec3::new(0.0, -0.3, 0.0)) + Vec3::new(0.0, -0.3, 0.0);
+        let expected = p * (1.0 - w) + moved * w;
+        assert!((found - expected).norm() < 1e-6, "{corner}: {found:?} {expected:?}");
     }
 }

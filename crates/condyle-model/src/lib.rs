@@ -50,5 +50,5 @@ pub use evaluate::{Jacobian, Mode, Pose, Program, SizeMismatch};
 pub use limit::{Cone, ConeError, ConePoint, Legal, Projected, Projection, Range};
 pub use model::{
     Closure, Coordinate, CoordinateId, CoordinateKind, JointSet, JointSetId, Marker, Model,
-    ModelBuilder, PostureTerm, Segment, SegmentId, UpAxis,
+    ModelBuilder, PostureTerm, Segment, SegmentId, Shape, UpAxis,
 };

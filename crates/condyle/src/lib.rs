@@ -265,10 +265,13 @@
 
 #[cfg(feature = "formats")]
 pub mod encode;
+mod figure;
 pub mod legal;
 pub mod matching;
 #[cfg(feature = "formats")]
 pub mod open;
+#[cfg(feature = "picture")]
+pub mod picture;
 #[cfg(feature = "document")]
 pub mod posing;
 pub mod scaling;
@@ -283,6 +286,7 @@ pub use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Subject}
 #[cfg(feature = "formats")]
 pub use condyle_formats as formats;
 pub use condyle_math as math;
+pub use condyle_mesh as mesh;
 pub use condyle_model::{
     self as model, Component, Coordinate, CoordinateId, CoordinateKind, Jacobian, Law, Mode, Model,
     ModelBuilder, Pose, Program, Range, SegmentId, Signal,
@@ -291,6 +295,9 @@ pub use condyle_motion::{
     self as motion, AngleUnit, Interpolation, Keys, LengthUnit, Motion, Observed, Posture,
     Recording, Table, Zeros,
 };
+#[cfg(feature = "picture")]
+pub use condyle_render as render;
+pub use figure::{Figure, Part};
 
 /// The README's examples, run as tests.
 #[cfg(doctest)]

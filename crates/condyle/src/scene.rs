@@ -1,23 +1,21 @@
 //! A model in motion as a scene that any viewer opens.
 
+use crate::Figure;
 use condyle_diagnostics::{Diagnostic, Read};
-use condyle_formats::glb::{
-    Finish, LocalPose, MarkerTrack, Scene, SceneNode, Shape, Track, UpAxis,
-};
-use condyle_math::{Affine, Vec3};
+use condyle_formats::glb::{LocalPose, MarkerTrack, Scene, SceneNode, Surface, Track, UpAxis};
+use condyle_math::Affine;
 use condyle_model::{Mode, Model, Pose, Program, SegmentId};
 use condyle_motion::Motion;
 use condyle_motion::Recording;
 use std::collections::BTreeSet;
 
-/// Bones as simple shapes, the motion's coordinates taken as they are: [`baked`] in open mode,
+/// Bones as surfaces, the motion's coordinates taken as they are: [`baked`] in open mode,
 /// without its warnings.
 pub fn scene(model: &Model, motion: &Motion, markers: Option<(&Recording, &[usize])>) -> Scene {
     baked(model, motion, Mode::Open, markers).value
 }
 
-/// Bones as simple shapes: from each segment's origin to where its children hang, with a ball at
-/// every joint.
+/// The surfaces of a model ([`Figure`]) on a node for each segment.
 ///
 /// Segments keep their names and their tree, so the file can be driven further in Blender: joint
 /// sets are evaluated, and the result is plain bones, each with its place, turn and size in its
@@ -48,6 +46,7 @@ pub fn baked(
     debug_assert!(evaluated.is_ok(), "defaults have the model's length");
     // A scene in motion rests where its first frame is.
     let rest_counts = motion.frames.is_empty();
+    let figure = Figure::new(model);
     let nodes = order
         .iter()
         .map(|&id| {
@@ -59,7 +58,7 @@ pub fn baked(
                 name: model.segment(id).name.clone(),
                 parent: model.segment(id).parent.map(|p| node_of[p.index()]),
                 rest,
-                shapes: shapes(model, id),
+                bound: figure.neutral[id.index()],
             }
         })
         .collect();
@@ -82,6 +81,16 @@ pub fn baked(
             condyle_model::UpAxis::Z => UpAxis::Z,
         },
         nodes,
+        surfaces: figure
+            .parts
+            .into_iter()
+            .map(|part| Surface {
+                nodes: part.segments.map(|id| node_of[id.index()]),
+                mesh: part.mesh,
+                finish: part.finish,
+                weights: part.weights,
+            })
+            .collect(),
         times: motion.times.clone(),
         tracks: if motion.frames.is_empty() { vec![] } else { tracks },
         markers,
@@ -157,44 +166,6 @@ fn local(model: &Model, pose: &Pose, id: SegmentId) -> (LocalPose, f64) {
     LocalPose::nearest(Affine::new(back * child.linear, back * step))
 }
 
-/// A joint ball at the segment's own joint, and a bone to each child's.
-fn shapes(model: &Model, id: SegmentId) -> Vec<Shape> {
-    let segment = model.segment(id);
-    let own = segment.joint_in_segment.translation;
-    let children: Vec<Vec3> = model
-        .segments()
-        .iter()
-        .filter(|s| s.parent == Some(id))
-        .map(|s| s.joint_in_parent.translation)
-        .collect();
-    // A last segment reaches to its farthest marker.
-    let marks = model.markers().iter().filter(|m| m.segment == Some(id)).map(|m| m.point);
-    let ends = if children.is_empty() {
-        marks.max_by(|a, b| (*a - own).norm().total_cmp(&(*b - own).norm())).into_iter().collect()
-    } else {
-        children
-    };
-    let mut shapes = vec![];
-    let mut longest: f64 = 0.03;
-    for end in ends {
-        let length = (end - own).norm();
-        if length < 0.005 {
-            continue;
-        }
-        longest = longest.max(length);
-        if own.norm() < 1e-9 {
-            shapes.push(Shape::Bone { to: end.to_array() });
-        } else {
-            // The bone's thick end is at the origin of its node, so only the far half is drawn.
-            shapes.push(Shape::Ball { at: own.to_array(), radius: 0.012, finish: Finish::Joint });
-            shapes.push(Shape::Bone { to: end.to_array() });
-        }
-    }
-    let radius = (0.06 * longest).clamp(0.006, 0.02);
-    shapes.push(Shape::Ball { at: own.to_array(), radius, finish: Finish::Joint });
-    shapes
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -245,7 +216,7 @@ mod tests {
         let r = condyle_math::Quat::from(place.rotation).to_mat3();
         let [x, y, z] = place.scale;
         let linear = condyle_math::Mat3::from_columns(r.x * x, r.y * y, r.z * z);
-        Affine::new(linear, Vec3::from(place.translation))
+        Affine::new(linear, condyle_math::Vec3::from(place.translation))
     }
 
     #[test]

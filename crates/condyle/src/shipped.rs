@@ -45,8 +45,10 @@ const MODELS: &[(&str, &str)] = &[];
 #[cfg(feature = "document")]
 const PARTS: &[(&str, &str)] = &[
     ("parts/body.toml", include_str!("../models/parts/body.toml")),
+    ("parts/hand.toml", include_str!("../models/parts/hand.toml")),
     ("parts/head.toml", include_str!("../models/parts/head.toml")),
     ("parts/human-markers.toml", include_str!("../models/parts/human-markers.toml")),
+    ("parts/knee-human.toml", include_str!("../models/parts/knee-human.toml")),
     ("parts/rib-cage.toml", include_str!("../models/parts/rib-cage.toml")),
     ("parts/vertebrae.toml", include_str!("../models/parts/vertebrae.toml")),
 ];

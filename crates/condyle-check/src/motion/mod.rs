@@ -62,6 +62,23 @@ pub struct Outside {
     pub source: String,
 }
 
+/// A coordinate that leaves what people reach on average: no fault, but worth a look.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Uncommon {
+    /// The coordinate.
+    pub coordinate: CoordinateId,
+    /// In how many frames.
+    pub frames: usize,
+    /// The frame in which it is farthest out, its time in seconds, and the value there.
+    pub frame: usize,
+    /// Its time in seconds.
+    pub time: f64,
+    /// The value there, in radians or metres.
+    pub value: f64,
+    /// How far it is beyond.
+    pub by: f64,
+}
+
 /// A follower whose column differs from the value that its leaders determine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Disagreement {
@@ -106,6 +123,8 @@ pub struct MotionCheck {
     pub violations: Vec<Violation>,
     /// The same for each coordinate, the farthest out (for its kind) first.
     pub outside: Vec<Outside>,
+    /// Coordinates beyond what people reach on average, in the order of the model.
+    pub uncommon: Vec<Uncommon>,
     /// Followers whose columns contradict their leaders.
     pub disagreements: Vec<Disagreement>,
     /// Limits of several numbers together that are broken, and contacts that leave their surface.
@@ -198,6 +217,9 @@ pub fn check(model: &Model, table: &Table) -> MotionCheck {
             if judged[id.index()] && (given[place] || follows) {
                 check.range(model, id, frame, time, value);
             }
+            if given[place] || follows {
+                check.typical(model, id, frame, time, value);
+            }
             if follows && given[place] {
                 let degrees = table.angle_unit == AngleUnit::Degrees;
                 check.coupling(model, id, [frame as f64, time, stored[place], value], degrees);
@@ -276,6 +298,25 @@ impl MotionCheck {
                 by,
                 nearest,
             });
+        }
+    }
+
+    fn typical(&mut self, model: &Model, id: CoordinateId, frame: usize, time: f64, value: f64) {
+        let Some([low, high]) = model.coordinate(id).typical else { return };
+        let by = (low - value).max(value - high);
+        if by <= tolerance(model.coordinate(id).kind) {
+            return;
+        }
+        match self.uncommon.iter_mut().find(|u| u.coordinate == id) {
+            Some(known) => {
+                known.frames += 1;
+                if by > known.by {
+                    (known.frame, known.time, known.value, known.by) = (frame, time, value, by);
+                }
+            }
+            None => {
+                self.uncommon.push(Uncommon { coordinate: id, frames: 1, frame, time, value, by })
+            }
         }
     }
 
@@ -398,6 +439,30 @@ impl MotionCheck {
             ));
         }
         findings.extend(limits);
+        self.uncommon.sort_by_key(|u| u.coordinate.index());
+        for u in &self.uncommon {
+            let coordinate = model.coordinate(u.coordinate);
+            let [low, high] = coordinate.typical.unwrap_or_default();
+            let source = coordinate.source.as_deref().unwrap_or("the model");
+            findings.push(finding(
+                Severity::Note,
+                "motion/uncommon",
+                [Subject::Coordinate(key(u.coordinate))],
+                format!(
+                    "`{}` is beyond what people reach on average in {}; most in frame {} ({} s): {}",
+                    key(u.coordinate),
+                    frames(u.frames),
+                    u.frame,
+                    rounded(u.time, 4),
+                    shown(u.coordinate, u.value),
+                ),
+                format!(
+                    "people reach {} to {}: {source}",
+                    shown(u.coordinate, low),
+                    shown(u.coordinate, high)
+                ),
+            ));
+        }
         for d in &self.disagreements {
             findings.push(finding(
                 Severity::Warning,

@@ -1,7 +1,8 @@
 //! GLB, binary glTF 2.0: an animated figure in one file.
 //!
-//! A [`Scene`] is a tree of named nodes with simple shapes, a list of times, and for each moving
-//! node its transform in its parent at every time. Lengths are metres; glTF is Y up, so a figure
+//! A [`Scene`] is a tree of named nodes, surfaces that hang on them, a list of times, and for each moving
+//! node its transform in its parent at every time. The surfaces are written as one skinned mesh whose
+//! joints are all nodes, so that programs show an armature whose bones can be posed. Lengths are metres; glTF is Y up, so a figure
 //! that is Z up is below a rotated root node. A node is translated, rotated, and scaled along its
 //! own axes, together with its children; glTF nodes represent no other transforms. Channels that
 //! never change are omitted. Times start at 0, as glTF has no negative times; times that are not
@@ -10,9 +11,9 @@
 mod pack;
 mod place;
 mod scene;
-mod shape;
+mod skin;
 mod write;
 
-pub use scene::{LocalPose, MarkerTrack, Scene, SceneNode, Track, UpAxis};
-pub use shape::{Finish, Shape};
+pub use condyle_mesh::{Finish, Mesh};
+pub use scene::{LocalPose, MarkerTrack, Scene, SceneNode, Surface, Track, UpAxis};
 pub use write::write;

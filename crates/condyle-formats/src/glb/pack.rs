@@ -32,11 +32,23 @@ impl Pack {
         let kind = match N {
             1 => Type::Scalar,
             3 => Type::Vec3,
+            16 => Type::Mat4,
             _ => Type::Vec4,
         };
         let bound = |b: [f32; N]| bounded.then(|| gltf_json::Value::from(b.to_vec()));
         let (low, high) = (bound(low), bound(high));
         self.accessor(root, start, data.len(), (ComponentType::F32, kind), target, (low, high))
+    }
+
+    /// Four joints for each corner.
+    pub(super) fn joints(&mut self, root: &mut Root, data: &[[u16; 4]]) -> Index<Accessor> {
+        let start = self.bytes.len();
+        for joint in data.iter().flatten() {
+            self.bytes.extend(joint.to_le_bytes());
+        }
+        let kind = (ComponentType::U16, Type::Vec4);
+        let target = Some(Target::ArrayBuffer);
+        self.accessor(root, start, data.len(), kind, target, (None, None))
     }
 
     /// Indices of corners, in 16 bits where they fit.

@@ -1,6 +1,7 @@
 //! The parts of a scene.
 
-use super::shape::Shape;
+use condyle_math::Affine;
+use condyle_mesh::{Finish, Mesh};
 
 /// The axis that points up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -35,8 +36,8 @@ impl Default for LocalPose {
     }
 }
 
-/// A named frame with its shapes.
-#[derive(Debug, Clone, PartialEq, Default)]
+/// A named frame.
+#[derive(Debug, Clone, PartialEq)]
 pub struct SceneNode {
     /// Shown in viewers.
     pub name: String,
@@ -44,8 +45,28 @@ pub struct SceneNode {
     pub parent: Option<usize>,
     /// Where the node is while no track moves it.
     pub rest: LocalPose,
-    /// What is drawn, in the frame of the node.
-    pub shapes: Vec<Shape>,
+    /// Where the node is in the figure's world while the surfaces are as they are given.
+    pub bound: Affine,
+}
+
+impl Default for SceneNode {
+    fn default() -> Self {
+        let rest = LocalPose::IDENTITY;
+        Self { name: String::new(), parent: None, rest, bound: Affine::IDENTITY }
+    }
+}
+
+/// A surface that one node carries, or two.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Surface {
+    /// In the figure's world, while every node is where it is bound.
+    pub mesh: Mesh,
+    /// How it looks.
+    pub finish: Finish,
+    /// Indices of the nodes that carry it; twice the same for one.
+    pub nodes: [usize; 2],
+    /// For each corner the part of the second node, from 0 to 1; empty for none.
+    pub weights: Vec<f64>,
 }
 
 /// The motion of one node.
@@ -76,6 +97,8 @@ pub struct Scene {
     pub up: UpAxis,
     /// Parents before their children.
     pub nodes: Vec<SceneNode>,
+    /// What is drawn.
+    pub surfaces: Vec<Surface>,
     /// Seconds, rising; empty for a still figure.
     pub times: Vec<f64>,
     /// Nodes without one stay at rest.
@@ -92,6 +115,7 @@ impl Default for Scene {
             name: String::new(),
             up: UpAxis::Y,
             nodes: Vec::new(),
+            surfaces: Vec::new(),
             times: Vec::new(),
             tracks: Vec::new(),
             markers: Vec::new(),

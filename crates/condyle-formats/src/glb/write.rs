@@ -3,16 +3,18 @@
 use std::collections::BTreeMap;
 
 use gltf_json::animation::{Animation, Channel, Interpolation, Property, Sampler};
-use gltf_json::buffer::{Buffer, Target};
-use gltf_json::mesh::{Mesh, Mode, Primitive, Semantic};
+use gltf_json::buffer::Buffer;
+use gltf_json::mesh::{Mesh, Mode, Primitive};
 use gltf_json::scene::{Node, UnitQuaternion};
 use gltf_json::validation::{Checked, USize64};
 use gltf_json::{Index, Material, Root};
 
 use super::pack::Pack;
 use super::scene::{LocalPose, Scene, UpAxis};
-use super::shape::{Finish, Shape, Triangles};
+use super::skin;
 use condyle_diagnostics::Error;
+use condyle_math::{Mat3, Vec3};
+use condyle_mesh::{Ball, Finish, Form};
 
 /// Writes a scene.
 ///
@@ -20,17 +22,17 @@ use condyle_diagnostics::Error;
 ///
 /// `glb/parent` if a node's parent does not come before it, `glb/track` if a track has no node,
 /// shares one, or is not as long as the times, `glb/time` if times are not finite and rising,
-/// `glb/pose` if a place or size is not finite or a rotation has no length, `glb/shape` if a shape's
-/// numbers are not finite or not positive, `glb/size` if the file would exceed 4 GiB.
+/// `glb/pose` if a place or size is not finite or a rotation has no length, `glb/surface` if a surface's
+/// numbers are not finite, name no corner or no node, or hang on a node that is bound where nothing can
+/// be, `glb/size` if the file would exceed 4 GiB.
 ///
 /// ```
-/// use condyle_formats::glb::{self, LocalPose, Scene, SceneNode, Shape, Track};
+/// use condyle_formats::glb::{self, LocalPose, Scene, SceneNode, Track};
 /// let quarter = LocalPose { rotation: [0.0, 0.0, 0.5_f64.sqrt(), 0.5_f64.sqrt()], ..LocalPose::IDENTITY };
 /// let scene = Scene {
 ///     name: "bend".into(),
 ///     nodes: vec![SceneNode {
 ///         name: "upper".into(),
-///         shapes: vec![Shape::Bone { to: [0.0, -0.4, 0.0] }],
 ///         ..SceneNode::default()
 ///     }],
 ///     times: vec![0.0, 1.0],
@@ -53,6 +55,7 @@ pub fn write(scene: &Scene) -> Result<Vec<u8>, Error> {
     };
     writer.root.asset.generator = Some("condyle".to_owned());
     let figure = writer.figure();
+    let skinned = writer.skin(&figure);
     let markers = writer.markers();
     let animation = writer.animation(&figure, &markers);
     if !animation.channels.is_empty() {
@@ -75,7 +78,8 @@ pub fn write(scene: &Scene) -> Result<Vec<u8>, Error> {
     });
     let shown = writer.root.push(gltf_json::Scene {
         name: Some(scene.name.clone()),
-        nodes: vec![top],
+        // Only its joints place a skinned mesh, so it stands beside them.
+        nodes: [top].into_iter().chain(skinned).collect(),
         extensions: None,
         extras: Default::default(),
     });
@@ -96,11 +100,8 @@ fn check(scene: &Scene) -> Result<(), Error> {
             .with_help("a parent comes before its children"));
         }
         check_pose(&node.rest, &node.name, "at rest")?;
-        if let Some(shape) = node.shapes.iter().find(|shape| !shape.is_well_formed()) {
-            return Err(Error::new("glb/shape", format!("`{}` has {shape:?}", node.name))
-                .with_help("places are finite and sizes positive, in metres"));
-        }
     }
+    skin::check(scene)?;
     if let Some(bad) = scene.times.iter().position(|t| !t.is_finite()) {
         return Err(Error::new("glb/time", format!("time {bad} is not finite")));
     }
@@ -128,11 +129,16 @@ fn check(scene: &Scene) -> Result<(), Error> {
             return Err(Error::new("glb/pose", format!("marker `{}` is not finite", marker.name)));
         }
     }
-    let ball = Shape::Ball { at: [0.0; 3], radius: scene.marker_radius, finish: Finish::Marker };
-    if !scene.markers.is_empty() && !ball.is_well_formed() {
-        return Err(Error::new("glb/shape", format!("marker radius {}", scene.marker_radius)));
+    if !scene.markers.is_empty() && ball(scene.marker_radius).check().is_err() {
+        return Err(Error::new("glb/surface", format!("marker radius {}", scene.marker_radius)));
     }
     Ok(())
+}
+
+/// A recorded marker.
+fn ball(radius: f64) -> Form {
+    let radii = Vec3::new(radius, radius, radius);
+    Form::Ball(Ball { at: Vec3::ZERO, radii, turn: Mat3::IDENTITY })
 }
 
 fn check_length(found: usize, scene: &Scene, name: &str) -> Result<(), Error> {
@@ -183,10 +189,10 @@ fn kept_frames(times: &[f64]) -> Vec<(usize, f32)> {
     kept
 }
 
-struct Writer<'s> {
-    scene: &'s Scene,
-    root: Root,
-    pack: Pack,
+pub(super) struct Writer<'s> {
+    pub(super) scene: &'s Scene,
+    pub(super) root: Root,
+    pub(super) pack: Pack,
     /// Frame and time of each key.
     kept: Vec<(usize, f32)>,
     materials: BTreeMap<Finish, Index<Material>>,
@@ -213,10 +219,8 @@ impl Writer<'_> {
         }
         let mut children: Vec<Vec<Index<Node>>> = vec![Vec::new(); scene.nodes.len()];
         for (index, (node, rest)) in scene.nodes.iter().zip(rests).enumerate() {
-            let mesh = self.mesh(&node.name, &node.shapes);
             let built = self.root.push(Node {
                 name: Some(node.name.clone()),
-                mesh,
                 translation: Some(rest.translation.map(|x| x as f32)),
                 rotation: unit(rest.rotation).map(UnitQuaternion),
                 scale: Some(rest.scale.map(|x| x as f32)).filter(|s| *s != [1.0; 3]),
@@ -250,8 +254,11 @@ impl Writer<'_> {
                 places.push(last.map(|x| x as f32));
             }
             let radius = scene.marker_radius;
-            let ball = Shape::Ball { at: [0.0; 3], radius, finish: Finish::Marker };
-            mesh = mesh.or_else(|| self.mesh("marker", &[ball]));
+            mesh = mesh.or_else(|| {
+                let mut corners = skin::Corners::default();
+                corners.add(&ball(radius).mesh(), &mut |_| None);
+                self.mesh("marker", BTreeMap::from([(Finish::Marker, corners)]))
+            });
             let node = self.root.push(Node {
                 name: Some(marker.name.clone()),
                 mesh,
@@ -263,27 +270,22 @@ impl Writer<'_> {
         nodes
     }
 
-    /// A mesh with one primitive for each finish; none without shapes.
-    fn mesh(&mut self, name: &str, shapes: &[Shape]) -> Option<Index<Mesh>> {
-        let mut by_finish: BTreeMap<Finish, Triangles> = BTreeMap::new();
-        for shape in shapes {
-            shape.add_to(by_finish.entry(shape.finish()).or_default());
-        }
+    /// A mesh with one primitive for each finish; none without triangles.
+    pub(super) fn mesh(
+        &mut self,
+        name: &str,
+        parts: BTreeMap<Finish, skin::Corners>,
+    ) -> Option<Index<Mesh>> {
         let mut primitives = Vec::new();
-        for (finish, triangles) in by_finish {
-            if triangles.indices.is_empty() {
+        for (finish, corners) in parts {
+            if corners.indices.is_empty() {
                 continue;
             }
             let (root, pack) = (&mut self.root, &mut self.pack);
-            let array = Some(Target::ArrayBuffer);
-            let positions = pack.floats(root, &triangles.positions, array, true);
-            let normals = pack.floats(root, &triangles.normals, array, false);
-            let indices = pack.indices(root, &triangles.indices);
+            let attributes = corners.attributes(root, pack);
+            let indices = pack.indices(root, &corners.indices);
             primitives.push(Primitive {
-                attributes: BTreeMap::from([
-                    (Checked::Valid(Semantic::Positions), positions),
-                    (Checked::Valid(Semantic::Normals), normals),
-                ]),
+                attributes,
                 indices: Some(indices),
                 material: Some(self.material(finish)),
                 mode: Checked::Valid(Mode::Triangles),
@@ -306,9 +308,11 @@ impl Writer<'_> {
     fn material(&mut self, finish: Finish) -> Index<Material> {
         let root = &mut self.root;
         *self.materials.entry(finish).or_insert_with(|| {
-            let (name, colour, roughness) = finish.look();
-            let mut material = Material { name: Some(name.to_owned()), ..Material::default() };
-            material.pbr_metallic_roughness.base_color_factor.0 = colour;
+            let roughness = if finish == Finish::Bone { 0.7 } else { 0.5 };
+            let [red, green, blue] = finish.colour();
+            let name = Some(finish.name().to_owned());
+            let mut material = Material { name, ..Material::default() };
+            material.pbr_metallic_roughness.base_color_factor.0 = [red, green, blue, 1.0];
             material.pbr_metallic_roughness.metallic_factor.0 = 0.0;
             material.pbr_metallic_roughness.roughness_factor.0 = roughness;
             root.push(material)

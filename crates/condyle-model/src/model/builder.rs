@@ -5,7 +5,7 @@ use super::posture;
 use super::scaling;
 use super::{
     Closure, ComponentId, Coordinate, CoordinateId, CoordinateKind, JointSet, JointSetId, Marker,
-    Model, PostureTerm, Segment, SegmentId, SizeGroup, UpAxis,
+    Model, PostureTerm, Segment, SegmentId, Shape, SizeGroup, UpAxis,
 };
 use crate::component::{
     Ball, Combine, Compensate, Component, ConstantCurvature, Depend, Ellipsoid, Law, Map, Pivot,
@@ -37,6 +37,7 @@ impl ModelBuilder {
                 joint_sets: vec![],
                 components: vec![],
                 markers: vec![],
+                shapes: vec![],
                 closures: vec![],
                 postures: vec![],
                 size_groups: vec![],
@@ -109,6 +110,7 @@ impl ModelBuilder {
             kind,
             default: kind.neutral(),
             range: Range::FREE,
+            typical: None,
             locked: false,
             follows: None,
             source: None,
@@ -313,7 +315,18 @@ impl ModelBuilder {
 
     /// A marker at a point of a segment (metres).
     pub fn marker(&mut self, name: &str, segment: Option<SegmentId>, point: Vec3) {
-        self.model.markers.push(Marker { name: name.to_owned(), segment, point });
+        self.model.markers.push(Marker { name: name.to_owned(), segment, point, like: None });
+    }
+
+    /// Another name for the place of a marker that stands, or will stand, at this point of a segment.
+    pub fn marker_like(&mut self, name: &str, like: &str, segment: Option<SegmentId>, point: Vec3) {
+        let like = Some(like.to_owned());
+        self.model.markers.push(Marker { name: name.to_owned(), segment, point, like });
+    }
+
+    /// What a bone looks like.
+    pub fn shape(&mut self, shape: Shape) {
+        self.model.shapes.push(shape);
     }
 
     /// A loop that tracking closes.

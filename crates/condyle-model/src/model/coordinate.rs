@@ -64,6 +64,9 @@ pub struct Coordinate {
     pub default: [f64; 4],
     /// Its range, of a kind that is one number.
     pub range: Range,
+    /// What the people of its source reach on average, lowest and highest: no limit, but what a motion is compared
+    /// with.
+    pub typical: Option<[f64; 2]>,
     /// Whether tracking keeps it at its default.
     pub locked: bool,
     /// What determines it, if it is coupled to others; requests for it are then ignored.

@@ -11,6 +11,7 @@ mod coordinate;
 mod posture;
 mod scaling;
 mod segment;
+mod shape;
 
 pub use builder::ModelBuilder;
 pub use check::{AXIS_LENGTH, CROSSING_RANGE, DEFAULT_OUTSIDE_RANGE, LOOKS_LIKE_DEGREES};
@@ -19,6 +20,7 @@ pub use coordinate::{Coordinate, CoordinateKind};
 pub use posture::PostureTerm;
 pub use scaling::SizeGroup;
 pub use segment::Segment;
+pub use shape::Shape;
 
 pub(crate) use check::{Node, dependency_order, measured};
 
@@ -55,6 +57,8 @@ pub struct Marker {
     pub segment: Option<SegmentId>,
     /// Its place in the segment, in metres.
     pub point: Vec3,
+    /// The marker whose place it has, where it is another name for that.
+    pub like: Option<String>,
 }
 
 /// A character, checked and constant.
@@ -67,6 +71,7 @@ pub struct Model {
     pub(crate) joint_sets: Vec<JointSet>,
     pub(crate) components: Vec<Component>,
     pub(crate) markers: Vec<Marker>,
+    pub(crate) shapes: Vec<Shape>,
     pub(crate) closures: Vec<Closure>,
     pub(crate) postures: Vec<PostureTerm>,
     pub(crate) size_groups: Vec<SizeGroup>,
@@ -110,6 +115,11 @@ impl Model {
     /// All markers.
     pub fn markers(&self) -> &[Marker] {
         &self.markers
+    }
+
+    /// What its bones look like; none where it does not say.
+    pub fn shapes(&self) -> &[Shape] {
+        &self.shapes
     }
 
     /// All closures.

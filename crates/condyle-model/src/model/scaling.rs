@@ -6,6 +6,7 @@
 //! joint in the parent      translation · s(parent)
 //! joint in the segment     translation · s(segment)
 //! marker, end of a loop    point · s(its segment)
+//! shape                    every length · s(its segment)
 //! length inside a joint    · s(parent)
 //! ```
 //!
@@ -97,6 +98,15 @@ impl Model {
         for marker in &mut model.markers {
             marker.point = marker.point * of(marker.segment);
         }
+        for shape in &mut model.shapes {
+            let factor = of(Some(shape.segment));
+            if factor != 1.0 {
+                shape.form = shape.form.grown(factor);
+            }
+            if let Some((segment, point)) = &mut shape.until {
+                *point = *point * of(Some(*segment));
+            }
+        }
         let of_component: Vec<f64> =
             self.joints_of_components().iter().map(|j| j.map_or(1.0, of)).collect();
         for (component, &factor) in model.components.iter_mut().zip(&of_component) {
@@ -128,7 +138,11 @@ impl Model {
     pub fn with_markers_at(&self, points: &[Option<Vec3>]) -> Self {
         let mut model = self.clone();
         for (marker, point) in model.markers.iter_mut().zip(points) {
-            marker.point = point.unwrap_or(marker.point);
+            if let Some(point) = *point {
+                marker.point = point;
+                // It is its own place now.
+                marker.like = None;
+            }
         }
         model
     }

@@ -3,6 +3,7 @@
 use crate::document::texts::{Name, Spot};
 use condyle_math::function::Function;
 use condyle_math::{Affine, Vec3};
+use condyle_mesh::{Finish, Form};
 use condyle_model::{CoordinateKind, Law, Range, UpAxis};
 use std::collections::HashSet;
 
@@ -18,6 +19,7 @@ pub(super) struct Draft {
     pub(super) components: Vec<ComponentDraft>,
     pub(super) outputs: Vec<OutputDraft>,
     pub(super) markers: Vec<MarkerDraft>,
+    pub(super) shapes: Vec<ShapeDraft>,
     pub(super) closures: Vec<ClosureDraft>,
     pub(super) postures: Vec<PostureDraft>,
     pub(super) sizes: Vec<SizeDraft>,
@@ -42,6 +44,7 @@ pub(super) struct CoordinateDraft {
     pub(super) kind: CoordinateKind,
     pub(super) default: [f64; 4],
     pub(super) range: Range,
+    pub(super) typical: Option<[f64; 2]>,
     pub(super) locked: bool,
     pub(super) source: Option<String>,
     pub(super) follows: Option<Name>,
@@ -61,6 +64,7 @@ impl CoordinateDraft {
             kind,
             default,
             range,
+            typical: None,
             locked: false,
             source: None,
             follows: None,
@@ -90,8 +94,24 @@ pub(super) struct OutputDraft {
 #[derive(Clone)]
 pub(super) struct MarkerDraft {
     pub(super) name: Name,
-    pub(super) segment: Option<Name>,
-    pub(super) point: Vec3,
+    pub(super) place: PlaceDraft,
+}
+
+#[derive(Clone)]
+pub(super) enum PlaceDraft {
+    /// A point of a segment, or of the world.
+    Point(Holder, Vec3),
+    /// From the place of another marker, in the axes of its segment.
+    Marker(Name, Vec3),
+}
+
+#[derive(Clone)]
+pub(super) struct ShapeDraft {
+    pub(super) name: Name,
+    pub(super) segment: Name,
+    pub(super) form: Form,
+    pub(super) finish: Finish,
+    pub(super) until: Option<PlaceDraft>,
 }
 
 #[derive(Clone)]
@@ -137,6 +157,7 @@ impl Draft {
         self.coordinates.sort_by_key(|c| at(&c.name));
         self.components.sort_by_key(|c| at(&c.name));
         self.markers.sort_by_key(|m| at(&m.name));
+        self.shapes.sort_by_key(|s| at(&s.name));
         self.closures.sort_by_key(|c| at(&c.name));
         self.postures.sort_by_key(|p| at(&p.name));
         self.sizes.sort_by_key(|s| at(&s.name));

@@ -14,6 +14,7 @@ pub(super) const TOP: &[&str] = &[
     "joint",
     "joint_set",
     "marker",
+    "shape",
     "closure",
     "posture",
     "size",
@@ -21,7 +22,7 @@ pub(super) const TOP: &[&str] = &[
 ];
 /// Those of them that a template may hold.
 pub(super) const REPEATED: &[&str] =
-    &["segment", "joint", "joint_set", "marker", "closure", "posture", "size"];
+    &["segment", "joint", "joint_set", "marker", "shape", "closure", "posture", "size"];
 pub(super) const MIRROR: &[&str] = &["plane", "from", "to"];
 pub(super) const SEGMENT: &[&str] = &[
     "parent",
@@ -77,6 +78,7 @@ pub(super) const COORDINATE: &[&str] = &[
     "kind",
     "default",
     "range",
+    "typical",
     "enforced",
     "locked",
     "unit",
@@ -85,7 +87,19 @@ pub(super) const COORDINATE: &[&str] = &[
     "rest",
     "stiffness",
 ];
-pub(super) const MARKER: &[&str] = &["segment", "at"];
+pub(super) const MARKER: &[&str] = &["segment", "at", "like"];
+pub(super) const POINT: &[&str] = &["segment", "at"];
+/// The forms of a shape.
+pub(super) const FORMS: &[&str] = &["ball", "box", "tube", "plate", "rib"];
+pub(super) const SHAPE: &[&str] =
+    &["segment", "finish", "ball", "box", "tube", "across", "plate", "rib"];
+pub(super) const BALL: &[&str] = &["at", "radii", "turn", "order", "matrix"];
+pub(super) const BOX: &[&str] = &["at", "size", "turn", "order", "matrix"];
+pub(super) const PLATE: &[&str] = &["outline", "middle", "thickness"];
+pub(super) const RIB: &[&str] = &[
+    "at", "chord", "peak", "angle", "proximal", "distal", "pump", "swing", "plane", "along",
+    "outward", "radii",
+];
 pub(super) const CLOSURE: &[&str] = &["points", "frames", "distance", "coupling"];
 pub(super) const POSTURE: &[&str] = &["sum", "rest", "stiffness", "source"];
 pub(super) const SIZE: &[&str] = &["segments"];
@@ -102,7 +116,7 @@ pub(super) const COUPLING: &[&str] = &["follower", "driver", "function"];
 pub fn keys() -> Vec<(String, Vec<&'static str>)> {
     let top = [HEAD, TOP].concat();
     let template = [TEMPLATE, REPEATED].concat();
-    let plain: [(&str, &[&'static str]); 19] = [
+    let plain: [(&str, &[&'static str]); 24] = [
         ("model", &top),
         ("mirror", MIRROR),
         ("template", &template),
@@ -114,7 +128,12 @@ pub fn keys() -> Vec<(String, Vec<&'static str>)> {
         ("closure", CLOSURE),
         ("posture", POSTURE),
         ("size", SIZE),
-        ("point", MARKER),
+        ("shape", SHAPE),
+        ("ball", BALL),
+        ("box", BOX),
+        ("plate", PLATE),
+        ("rib", RIB),
+        ("point", POINT),
         ("frame", FRAME),
         ("centre", CENTRE),
         ("cone_point", CONE_POINT),

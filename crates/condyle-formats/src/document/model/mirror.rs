@@ -12,7 +12,7 @@
 
 use super::draft::{
     ClosureDraft, ComponentDraft, ConditionDraft, CoordinateDraft, Draft, Holder, MarkerDraft,
-    OutputDraft, PostureDraft, SegmentDraft,
+    OutputDraft, PlaceDraft, PostureDraft, SegmentDraft, ShapeDraft,
 };
 use crate::document::texts::{Name, Spot, Texts};
 use condyle_diagnostics::{Severity, listed};
@@ -41,6 +41,7 @@ impl Mirror {
         let sets = written(&mut draft.sets.iter());
         let segments = written(&mut draft.segments.iter().map(|s| &s.name));
         let markers = written(&mut draft.markers.iter().map(|m| &m.name));
+        let shapes = written(&mut draft.shapes.iter().map(|s| &s.name));
         let closures = written(&mut draft.closures.iter().map(|c| &c.name));
         let postures = written(&mut draft.postures.iter().map(|p| &p.name));
         let news = |known: &HashSet<String>, name: &str| {
@@ -102,10 +103,17 @@ impl Mirror {
         add(
             &mut draft.markers,
             |m| news(&markers, &m.name.text),
-            |m| MarkerDraft {
-                name: self.renamed(&m.name),
-                segment: self.holder(&m.segment),
-                point: self.reflection.point(m.point),
+            |m| MarkerDraft { name: self.renamed(&m.name), place: self.place(&m.place) },
+        );
+        add(
+            &mut draft.shapes,
+            |s| news(&shapes, &s.name.text),
+            |s| ShapeDraft {
+                name: self.renamed(&s.name),
+                segment: self.renamed(&s.segment),
+                form: s.form.mirrored(&|p| self.reflection.point(p)),
+                finish: s.finish,
+                until: s.until.as_ref().map(|place| self.place(place)),
             },
         );
         add(
@@ -198,6 +206,17 @@ impl Mirror {
     fn port(&self, port: &Name) -> Name {
         let parts: Vec<String> = port.text.split('.').map(|part| self.name(part)).collect();
         Name { text: parts.join("."), spot: port.spot }
+    }
+
+    fn place(&self, place: &PlaceDraft) -> PlaceDraft {
+        match place {
+            PlaceDraft::Point(holder, p) => {
+                PlaceDraft::Point(self.holder(holder), self.reflection.point(*p))
+            }
+            PlaceDraft::Marker(like, p) => {
+                PlaceDraft::Marker(self.renamed(like), self.reflection.point(*p))
+            }
+        }
     }
 
     fn holder(&self, holder: &Holder) -> Holder {

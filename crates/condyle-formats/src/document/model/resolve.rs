@@ -1,7 +1,7 @@
 //! Resolves names, and builds the checked model.
 
 use super::Origin;
-use super::draft::{ConditionDraft, Draft, Holder};
+use super::draft::{ConditionDraft, Draft, Holder, MarkerDraft, PlaceDraft, ShapeDraft};
 use super::mirror::escaped;
 use crate::document::texts::{Name, Spot, Texts};
 use condyle_diagnostics::{Diagnostic, Read, Severity, Subject, did_you_mean, nearest};
@@ -9,7 +9,8 @@ use condyle_math::Vec3;
 use condyle_model::component::{PortType, Product};
 use condyle_model::model::{AXIS_LENGTH, ComponentId, Condition, JointSetId};
 use condyle_model::{
-    Closure, CoordinateId, CoordinateKind, Law, Model, ModelBuilder, PostureTerm, SegmentId, Signal,
+    Closure, CoordinateId, CoordinateKind, Law, Model, ModelBuilder, PostureTerm, SegmentId, Shape,
+    Signal,
 };
 use std::collections::{HashMap, HashSet};
 
@@ -178,6 +179,7 @@ impl Resolver<'_> {
             let id = self.builder.coordinate(set, &c.name.text, c.kind);
             let made = self.builder.coordinate_mut(id);
             (made.default, made.range, made.locked) = (c.default, c.range, c.locked);
+            made.typical = c.typical;
             made.source.clone_from(&c.source);
             let key = format!("{}/{}", c.set, c.name.text);
             for key in [c.name.text.clone(), key] {
@@ -220,9 +222,24 @@ impl Resolver<'_> {
         }
         self.outputs(&draft.outputs);
         for m in &draft.markers {
-            let segment = self.holder(&m.segment);
             self.places.insert(Subject::Marker(m.name.text.clone()), m.name.spot);
-            self.builder.marker(&m.name.text, segment, m.point);
+            let (segment, point) = self.place(&m.place, &draft.markers).unwrap_or_default();
+            match &m.place {
+                PlaceDraft::Marker(like, Vec3::ZERO) => {
+                    self.builder.marker_like(&m.name.text, &like.text, segment, point);
+                }
+                _ => self.builder.marker(&m.name.text, segment, point),
+            }
+        }
+        for s in draft.shapes {
+            self.places.insert(Subject::Shape(s.name.text.clone()), s.name.spot);
+            let Some(segment) = self.segment(&s.segment) else { continue };
+            let until = s.until.and_then(|place| {
+                let (segment, point) = self.place(&place, &draft.markers)?;
+                Some((segment?, point))
+            });
+            let ShapeDraft { form, finish, .. } = s;
+            self.builder.shape(Shape { name: s.name.text, segment, form, finish, until });
         }
         for c in &draft.closures {
             self.places.insert(Subject::Closure(c.name.text.clone()), c.name.spot);
@@ -398,6 +415,36 @@ impl Resolver<'_> {
             (format!("unknown segment `{}`", name.text), help)
         });
         None
+    }
+
+    /// A point with its segment; `None` after an error.
+    fn place(
+        &mut self,
+        place: &PlaceDraft,
+        markers: &[MarkerDraft],
+    ) -> Option<(Option<SegmentId>, Vec3)> {
+        let (like, offset) = match place {
+            PlaceDraft::Point(holder, point) => return Some((self.holder(holder), *point)),
+            PlaceDraft::Marker(like, offset) => (like, *offset),
+        };
+        match markers.iter().find(|m| m.name.text == like.text).map(|m| &m.place) {
+            Some(PlaceDraft::Point(holder, point)) => Some((self.holder(holder), *point + offset)),
+            Some(PlaceDraft::Marker(other, _)) => {
+                let message = format!("`{}` is itself another name of a marker", like.text);
+                let help =
+                    format!("name a marker with a place of its own, such as `{}`", other.text);
+                self.texts.error(like.spot, "model/unknown-name", message, help);
+                None
+            }
+            None => {
+                let names = markers.iter().map(|m| m.name.text.as_str());
+                let otherwise = || "name a marker of this model".to_owned();
+                let help = did_you_mean(&like.text, names, otherwise);
+                let message = format!("unknown marker `{}`", like.text);
+                self.texts.error(like.spot, "model/unknown-name", message, help);
+                None
+            }
+        }
     }
 
     fn holder(&mut self, holder: &Holder) -> Option<SegmentId> {

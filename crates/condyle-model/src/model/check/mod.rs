@@ -81,6 +81,7 @@ fn check_names(model: &Model, findings: &mut Vec<Diagnostic>) {
         duplicates(model.joint_sets.iter().map(|s| s.name.as_str())),
     );
     report("marker", Subject::Marker, duplicates(model.markers.iter().map(|m| m.name.as_str())));
+    report("shape", Subject::Shape, duplicates(model.shapes.iter().map(|s| s.name.as_str())));
     let keys: Vec<String> = model
         .coordinates
         .iter()

@@ -3,20 +3,37 @@
 use super::FRAME;
 use super::ModelReader;
 use crate::document::fields::Fields;
-use crate::document::model::draft::{ClosureDraft, ConditionDraft, Draft, Holder, MarkerDraft};
+use crate::document::model::draft::{
+    ClosureDraft, ConditionDraft, Draft, Holder, MarkerDraft, PlaceDraft,
+};
 use crate::document::model::keys;
-use crate::document::tree::{Entry, Node};
+use crate::document::tree::{Entry, Node, Value};
 use condyle_math::{Affine, Vec3};
 
 impl ModelReader<'_> {
     pub(super) fn marker(&mut self, draft: &mut Draft, entry: &Entry) {
-        let label = format!("marker.{}", entry.key.text);
-        let fields = self.table(&entry.node, entry.key.spot, label, keys::MARKER);
+        let name = entry.key.clone();
+        let label = format!("marker.{}", name.text);
+        if matches!(entry.node.value, Value::Text(_)) {
+            // Another name for the place of a marker.
+            let Some(like) = self.text(&entry.node, &label) else { return };
+            draft.markers.push(MarkerDraft { name, place: PlaceDraft::Marker(like, Vec3::ZERO) });
+            return;
+        }
+        let fields = self.table(&entry.node, name.spot, label, keys::MARKER);
         let (segment, point) = self.point(&fields);
-        draft.markers.push(MarkerDraft { name: entry.key.clone(), segment, point });
+        if let Some(node) = fields.get("like") {
+            if fields.get("segment").is_some() {
+                self.exclusive(node, "like", "segment");
+            }
+            let Some(like) = self.text(node, "like") else { return };
+            draft.markers.push(MarkerDraft { name, place: PlaceDraft::Marker(like, point) });
+            return;
+        }
+        draft.markers.push(MarkerDraft { name, place: PlaceDraft::Point(segment, point) });
     }
 
-    fn point(&mut self, fields: &Fields<'_>) -> (Holder, Vec3) {
+    pub(super) fn point(&mut self, fields: &Fields<'_>) -> (Holder, Vec3) {
         let segment = fields.get("segment").and_then(|n| self.text(n, "segment"));
         let point = fields.get("at").and_then(|n| self.vector(n, "at")).unwrap_or(Vec3::ZERO);
         (segment, point)
@@ -30,7 +47,7 @@ impl ModelReader<'_> {
         let condition = match (fields.get("points"), fields.get("frames"), fields.get("coupling")) {
             (Some(node), None, None) => self.two(node, "points").map(|[a, b]| {
                 let mut point = |node: &Node| {
-                    let fields = self.table(node, node.spot, label.clone(), keys::MARKER);
+                    let fields = self.table(node, node.spot, label.clone(), keys::POINT);
                     self.point(&fields)
                 };
                 let at = [point(a), point(b)];

@@ -63,6 +63,17 @@ impl ModelReader<'_> {
                 self.range(node, unit, &mut coordinate.range);
             }
         }
+        if let Some(node) = fields.get("typical")
+            && let Some(ends) = self.some::<2>(node, "typical")
+        {
+            if orientation || ends[0] > ends[1] {
+                let message = "`typical` is not [lowest, highest]";
+                let help =
+                    "give what people reach on average, as in a range; omit it for an orientation";
+                self.texts.error(node.spot, "model/range", message, help);
+            }
+            coordinate.typical = Some(ends.map(|end| unit * end));
+        }
         let held = coordinate.range.lower.is_some() || coordinate.range.upper.is_some();
         coordinate.range.enforced = self.flag(fields.get("enforced"), "enforced", held);
         coordinate.locked = self.flag(fields.get("locked"), "locked", false);

@@ -11,6 +11,7 @@ mod measured;
 mod posture;
 mod shape;
 mod size;
+mod surface;
 
 pub(super) use component::component_keys;
 
@@ -67,6 +68,7 @@ impl ModelReader<'_> {
                     "joint" => self.joint(&mut draft, entry),
                     "joint_set" => self.joint_set(&mut draft, entry),
                     "marker" => self.marker(&mut draft, entry),
+                    "shape" => self.shape(&mut draft, entry),
                     "closure" => self.closure(&mut draft, entry),
                     "posture" => self.posture(&mut draft, entry),
                     _ => self.size(&mut draft, entry),

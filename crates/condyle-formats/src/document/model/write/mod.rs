@@ -1,6 +1,7 @@
 //! Writes any model, with everything expanded.
 
 mod component;
+mod surface;
 
 use super::mirror::escaped;
 use condyle_math::function::{Curve, Function, FunctionOfSeveral};
@@ -98,10 +99,21 @@ impl Writer<'_> {
         }
         for marker in model.markers() {
             line!(self, "\n[marker.{}]", key(&marker.name));
+            if let Some(like) = &marker.like
+                && model.markers().iter().any(|m| {
+                    m.name == *like && (m.segment, m.point) == (marker.segment, marker.point)
+                })
+            {
+                line!(self, "like = {}", text(like));
+                continue;
+            }
             if let Some(segment) = marker.segment {
                 line!(self, "segment = {}", text(&model.segment(segment).name));
             }
             line!(self, "at = {}", vector(marker.point));
+        }
+        for shape in model.shapes() {
+            self.shape(shape);
         }
         self.closures();
         for posture in &model.postures()[short..] {
@@ -179,6 +191,9 @@ impl Writer<'_> {
         if held {
             let side = |v: Option<f64>| v.map_or("\"none\"".to_owned(), number);
             line!(self, "range = [{}, {}]", side(lower), side(upper));
+        }
+        if let Some([low, high]) = c.typical {
+            line!(self, "typical = [{}, {}]", number(low), number(high));
         }
         if enforced != held {
             line!(self, "enforced = {enforced}");
