@@ -60,7 +60,8 @@ fn twins(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
     type Spot = (Option<SegmentId>, [i64; 3]);
     let mut at: HashMap<Spot, Vec<&str>> = HashMap::new();
     let mut order = vec![];
-    for marker in subject.model.markers() {
+    // Another name for a marker is meant.
+    for marker in subject.model.markers().iter().filter(|marker| marker.like.is_none()) {
         // Ten micrometres: equal in the digits of a file.
         let spot = (marker.segment, marker.point.to_array().map(|v| (v * 1e5).round() as i64));
         let here = at.entry(spot).or_default();

@@ -66,7 +66,7 @@ fn the_other_side_is_the_mirror_image() {
         let (volume, mirrored) = (right.volume(), left.volume());
         // Quadrilaterals are cut along the other diagonal.
         assert!(
-            volume > 0.0 && (volume / mirrored - 1.0).abs() < 1e-5,
+            volume > 0.0 && (volume / mirrored - 1.0).abs() < 2e-3,
             "{name}: {volume} {mirrored}"
         );
         // Every corner of the one has its image among those of the other, up to how finely both are cut.
@@ -102,7 +102,7 @@ fn shapes_grow_with_their_segments() {
         if matches!(shape.form, Form::Tube(_) | Form::Rib(_)) {
             // More corners fit around a thicker tube.
             let ratio = large.volume() / small.volume();
-            assert!((ratio / factor.powi(3) - 1.0).abs() < 0.03, "{}: {ratio}", shape.name);
+            assert!((ratio / factor.powi(3) - 1.0).abs() < 0.06, "{}: {ratio}", shape.name);
         } else {
             for (p, q) in small.positions.iter().zip(&large.positions) {
                 assert!((*p * factor - *q).norm() < 1e-9, "{}", shape.name);
@@ -125,6 +125,15 @@ fn a_name_stands_for_the_place_of_a_marker() {
     assert_eq!(place("TT_r"), (Some("shank_r"), Vec3::new(0.03, -0.06, 0.01)));
     assert_eq!(place("TT_l"), (Some("shank_l"), Vec3::new(0.03, -0.06, -0.01)));
     assert_eq!(place("skin_l"), (Some("shank_l"), Vec3::new(0.04, -0.06, -0.01)));
+    // A copy says so too, but for a marker that was moved to a place of its own.
+    let written = document::write(&model);
+    assert!(written.contains("[marker.TT_r]\nlike = \"insertion_r\"\n"), "{written}");
+    let moved: Vec<_> =
+        model.markers().iter().map(|m| (m.name == "TT_r").then_some(Vec3::X)).collect();
+    let moved = model.with_markers_at(&moved);
+    assert!(
+        document::write(&moved).contains("[marker.TT_r]\nsegment = \"shank_r\"\nat = [1, 0, 0]\n")
+    );
 }
 
 #[test]

@@ -15,17 +15,18 @@ pub struct Ball {
     pub turn: Mat3,
 }
 
-const MERIDIANS: usize = 16;
-const PARALLELS: usize = 10;
-
 impl Ball {
     pub(crate) fn mesh(&self) -> Mesh {
+        let widest = self.radii.to_array().into_iter().fold(0.0, f64::max);
+        // About 7 mm from corner to corner, 12 to 40 of them around.
+        let meridians = ((TAU * widest / 0.007) as usize).clamp(12, 40);
+        let parallels = (0.6 * meridians as f64) as usize;
         let ring = |parallel: usize| -> Vec<Vec3> {
-            let (sin, cos) = (PI * parallel as f64 / PARALLELS as f64).sin_cos();
-            let meridians = (0..MERIDIANS).map(|m| TAU * m as f64 / MERIDIANS as f64);
-            meridians.map(|a| Vec3::new(sin * a.cos(), cos, -sin * a.sin())).collect()
+            let (sin, cos) = (PI * parallel as f64 / parallels as f64).sin_cos();
+            let around = (0..meridians).map(|m| TAU * m as f64 / meridians as f64);
+            around.map(|a| Vec3::new(sin * a.cos(), cos, -sin * a.sin())).collect()
         };
-        let rings: Vec<_> = (1..PARALLELS).map(ring).collect();
+        let rings: Vec<_> = (1..parallels).map(ring).collect();
         let mut mesh = Mesh::of_rings(&rings, Vec3::Y, -Vec3::Y);
         for (p, n) in mesh.positions.iter_mut().zip(&mut mesh.normals) {
             // The gradient of the ellipsoid's equation.

@@ -270,6 +270,8 @@ pub mod legal;
 pub mod matching;
 #[cfg(feature = "formats")]
 pub mod open;
+#[cfg(feature = "picture")]
+pub mod picture;
 #[cfg(feature = "document")]
 pub mod posing;
 pub mod scaling;
@@ -293,6 +295,8 @@ pub use condyle_motion::{
     self as motion, AngleUnit, Interpolation, Keys, LengthUnit, Motion, Observed, Posture,
     Recording, Table, Zeros,
 };
+#[cfg(feature = "picture")]
+pub use condyle_render as render;
 pub use figure::{Figure, Part};
 
 /// The README's examples, run as tests.

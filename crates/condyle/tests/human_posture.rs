@@ -193,11 +193,16 @@ impl Held {
                 }
             }
         }
-        let [lumbar, thoracic] = [
+        let [trunk, lumbar, thoracic] = [
+            model.find_coordinate("trunk_rotation")?,
             model.find_coordinate("lumbar_rotation")?,
             model.find_coordinate("thoracic_rotation")?,
         ];
-        let turns = frames.iter().map(|q| [model.value(q, lumbar), model.value(q, thoracic)]);
+        // A sixth of a turn of the trunk is lumbar.
+        let turns = frames.iter().map(|q| {
+            let whole = model.value(q, trunk);
+            [model.value(q, lumbar) + whole / 6.0, model.value(q, thoracic) + whole * 5.0 / 6.0]
+        });
         let large = turns.filter(|[l, t]| l.abs().max(t.abs()) > 2f64.to_radians());
         let (mut count, mut alike) = (0, 0u32);
         for [l, t] in large {

@@ -8,6 +8,7 @@ mod diff;
 mod fk;
 mod info;
 mod pose;
+mod render;
 mod scale;
 mod track;
 
@@ -44,6 +45,8 @@ enum Command {
     Fk(fk::Fk),
     /// Find the legal pose nearest to rest that meets goals, loops closed.
     Pose(pose::Pose),
+    /// Draw a model, or frames of its motion, as a PNG.
+    Render(render::Render),
     /// Compute the motion of a model that follows recorded markers.
     Track(track::Track),
     /// Scale a model to the person of a static trial.
@@ -120,6 +123,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
         Command::Check(command) => command.run(),
         Command::Fk(command) => command.run(),
         Command::Pose(command) => command.run(),
+        Command::Render(command) => command.run(),
         Command::Track(command) => command.run(),
         Command::Scale(command) => command.run(),
         Command::Convert(command) => command.run(),

@@ -62,8 +62,7 @@ pub fn write(scene: &Scene) -> Result<Vec<u8>, Error> {
         writer.root.push(animation);
     }
     let tops = scene.nodes.iter().zip(&figure).filter(|(n, _)| n.parent.is_none());
-    let tops = tops.map(|(_, index)| *index).chain(markers.iter().map(|m| m.node));
-    let tops = tops.chain(skinned).collect();
+    let tops = tops.map(|(_, index)| *index).chain(markers.iter().map(|m| m.node)).collect();
     let top = writer.root.push(Node {
         name: Some(scene.name.clone()),
         children: Some(tops).filter(|c: &Vec<_>| !c.is_empty()),
@@ -79,7 +78,8 @@ pub fn write(scene: &Scene) -> Result<Vec<u8>, Error> {
     });
     let shown = writer.root.push(gltf_json::Scene {
         name: Some(scene.name.clone()),
-        nodes: vec![top],
+        // Only its joints place a skinned mesh, so it stands beside them.
+        nodes: [top].into_iter().chain(skinned).collect(),
         extensions: None,
         extras: Default::default(),
     });

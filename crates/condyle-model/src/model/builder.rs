@@ -315,7 +315,13 @@ impl ModelBuilder {
 
     /// A marker at a point of a segment (metres).
     pub fn marker(&mut self, name: &str, segment: Option<SegmentId>, point: Vec3) {
-        self.model.markers.push(Marker { name: name.to_owned(), segment, point });
+        self.model.markers.push(Marker { name: name.to_owned(), segment, point, like: None });
+    }
+
+    /// Another name for the place of a marker that stands, or will stand, at this point of a segment.
+    pub fn marker_like(&mut self, name: &str, like: &str, segment: Option<SegmentId>, point: Vec3) {
+        let like = Some(like.to_owned());
+        self.model.markers.push(Marker { name: name.to_owned(), segment, point, like });
     }
 
     /// What a bone looks like.

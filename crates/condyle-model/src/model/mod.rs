@@ -57,6 +57,8 @@ pub struct Marker {
     pub segment: Option<SegmentId>,
     /// Its place in the segment, in metres.
     pub point: Vec3,
+    /// The marker whose place it has, where it is another name for that.
+    pub like: Option<String>,
 }
 
 /// A character, checked and constant.

@@ -138,7 +138,11 @@ impl Model {
     pub fn with_markers_at(&self, points: &[Option<Vec3>]) -> Self {
         let mut model = self.clone();
         for (marker, point) in model.markers.iter_mut().zip(points) {
-            marker.point = point.unwrap_or(marker.point);
+            if let Some(point) = *point {
+                marker.point = point;
+                // It is its own place now.
+                marker.like = None;
+            }
         }
         model
     }

@@ -41,13 +41,12 @@ impl Figure {
         Self::shipped(name)
     }
 
-    /// A text that a test has made. It may include shipped models by file name.
+    /// A text that a test has made. It may include shipped models and their parts by file name.
     #[track_caller]
     pub(crate) fn of(text: &str) -> Self {
         let include = &mut |file: &str| {
-            let models = concat!(env!("CARGO_MANIFEST_DIR"), "/models");
-            std::fs::read_to_string(std::path::Path::new(models).join(file))
-                .map_err(|_| format!("`{file}` is not shipped"))
+            let models = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+            std::fs::read_to_string(models.join(file)).map_err(|error| error.to_string())
         };
         let read = document::read(text, include).expect("a model");
         assert_eq!(read.warnings, []);

@@ -124,3 +124,40 @@ fn marker_sets_are_whole() {
         assert_eq!((right.x, right.y, right.z), (left.x, left.y, -left.z));
     }
 }
+
+/// A man or woman of a stature: the head's place above the ground where the pelvis stands as the text
+/// says, mm.
+#[test]
+fn a_person_is_as_tall_as_the_stature() {
+    // ANSUR II (2012): of 940 men of 1730 to 1770 mm and 508 women of 1600 to 1640 the heights of
+    // suprasternale and tenth rib, of which nothing was built, with one SD and the slopes on stature.
+    let [men, women] = [
+        [(1433.0, 15.0, 0.877), (1115.0, 22.0, 0.724)],
+        [(1321.0, 15.0, 0.874), (1048.0, 19.0, 0.731)],
+    ];
+    for (stature, woman, mean, measured) in [
+        (1.75, 0, 1.75, men),
+        (1.62, 0, 1.75, men),
+        (1.90, 0, 1.75, men),
+        (1.62, 1, 1.62, women),
+        (1.75, 1, 1.62, women),
+    ] {
+        let text = format!(
+            "condyle = 1\nkind = \"model\"\ninclude = [\"human.toml\"]\n\
+             constants = {{ stature = {stature}, woman = {woman} }}"
+        );
+        let person = Figure::of(&text);
+        let stands = person.model.defaults();
+        let pose = person.open(&stands);
+        let height = |name: &str| person.marker(&pose, name).y * 1e3;
+        let vertex = height("vertex");
+        assert!((vertex - 1e3 * stature).abs() < 5.0, "{stature} {woman}: {vertex}");
+        // The notch is bone, 5 to 10 mm behind and below its skin; the lowest of the tenth rib half a
+        // rib's height below its centreline.
+        let found = [height("suprasternal_notch"), height("rib_10_end_r") - 6.0];
+        for (found, (height, sd, slope)) in found.into_iter().zip(measured) {
+            let expected = height + slope * 1e3 * (stature - mean);
+            assert!((found - expected).abs() < sd, "{stature} {woman}: {found}, {expected}");
+        }
+    }
+}

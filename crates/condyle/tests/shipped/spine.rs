@@ -5,7 +5,7 @@
 
 use crate::figure::{Draws, Figure, apart, turns};
 use condyle::math::{Affine, Vec3};
-use condyle::{Pose, SegmentId};
+use condyle::{Mode, Pose, SegmentId};
 
 const LUMBAR: [&str; 5] = ["vl5", "vl4", "vl3", "vl2", "vl1"];
 const THORACIC: [&str; 12] =
@@ -27,61 +27,80 @@ fn each_level(spine: &Figure, pose: &Pose, names: &[&str]) -> (Vec<[f64; 3]>, [f
 #[test]
 fn nothing_to_remark() {
     for name in ["spine", "spine-shao2003"] {
-        Figure::alone(name).assert_unremarked();
+        Figure::shipped(name).assert_unremarked();
     }
 }
 
 #[test]
 fn every_coordinate_names_its_source() {
     for name in ["spine", "spine-shao2003"] {
-        Figure::alone(name).assert_sourced();
+        Figure::shipped(name).assert_sourced();
     }
 }
 
 #[test]
 fn at_zero_every_joint_is_at_rest() {
-    let spine = Figure::alone("spine");
+    let spine = Figure::shipped("spine");
     spine.assert_at_rest(&spine.at(&[]));
 }
 
-/// Bruno, Bouxsein & Anderson 2015: joint centres from L5-S1 in mm, tilts in degrees. Mortensen et
-/// al. 2018: C0-1 is (16.2, 134.9) mm from C7-T1.
+/// The tilt of a segment's y axis, in degrees, positive backward.
+fn tilt(spine: &Figure, pose: &Pose, segment: &str) -> f64 {
+    let found = pose.segment(spine.id(segment)).linear;
+    found.at(1, 0).atan2(found.at(0, 0)).to_degrees()
+}
+
+/// Curvature of living people who stand, from studies of which the tilts were not made one by one.
 #[test]
-fn at_zero_it_stands_as_its_sources_do() {
-    let spine = Figure::alone("spine");
+fn it_stands_as_people_do() {
+    let spine = Figure::shipped("spine");
     let pose = spine.at(&[]);
-    let table = [
-        ("vl5", 0.0, 0.0, -21.0),
-        ("vl4", 14.2, 37.0, -3.0),
-        ("vl3", 16.1, 73.7, 9.0),
-        ("vl2", 10.4, 110.0, 16.0),
-        ("vl1", 1.0, 142.7, 22.0),
-        ("vt12", -12.3, 175.7, 20.0),
-        ("vt8", -40.6, 289.3, 2.0),
-        ("vt4", -28.0, 390.3, -22.0),
-        ("vt1", 0.7, 450.7, -30.0),
-        ("vc7", 5.0, 471.6, 0.0),
-        ("skull", 5.0 + 16.2, 471.6 + 134.9, 0.0),
-    ];
-    for (name, x, y, tilt) in table {
-        let found = pose.segment(spine.id(name));
-        // Printed to 0.1 mm, after up to 18 lengths that are themselves printed to 0.1 mm.
-        let off = found.translation - Vec3::new(x, y, 0.0) * 1e-3;
-        assert!(off.norm() < 0.2e-3, "{name} {off:?}");
-        let angle = found.linear.at(1, 0).atan2(found.linear.at(0, 0)).to_degrees();
-        assert!((angle - tilt).abs() < 1e-9, "{name} {angle}");
-    }
+    let place = |name: &str| pose.segment(spine.id(name)).translation * 1e3;
+    let turn = |upper: &str, lower: &str| tilt(&spine, &pose, upper) - tilt(&spine, &pose, lower);
+    let near = |what: &str, found: f64, mean: f64, within: f64| {
+        assert!((found - mean).abs() <= within, "{what}: {found}");
+    };
+    // Cobb angles and one SD: 627 volunteers (PMC6680033), of the wedge of S1 as well: T12-S1 49.8,
+    // SD 11.2, less that of the endplate of T12, which counts half a wedge of 1 degree here. Bernhardt
+    // & Bridwell 1989: T3-T12 36, range 9 to 53. Guo et al. 2018: C2-C7 12.7, 6.6 to 18.8.
+    near("T12 to S1", tilt(&spine, &pose, "vt12") + 40.0, 49.8, 11.2);
+    near("T3 to T12", turn("vt12", "vt3"), 36.0, 17.0);
+    near("C2 to C7", turn("vc2", "vc7"), 12.7, 6.1);
+    // 41 of 85 people have a T1 slope of 20 to 30. C7 goes on with it: no more than the 5 degrees of
+    // a cervical wedge.
+    near("T1 slope", -tilt(&spine, &pose, "vt1"), 25.0, 5.0);
+    near("C7 on T1", turn("vc7", "vt1"), 0.0, 5.0);
+    // Tang et al. 2021, 126 adults: C7 21.6 mm behind the rear corner of S1, SD 31, which lies half a
+    // body's depth, 17 mm, along a slope of 40 degrees behind L5-S1; C2 18.6 before the rear corner of
+    // C7, SD 7.9, that corner 8 mm behind the middle and 14 up, where C7 is 14 high.
+    let behind = |name: &str, x: f64, y: f64| {
+        (pose.segment(spine.id(name)) * Vec3::new(x * 1e-3, y * 1e-3, 0.0)).x * 1e3
+    };
+    let rear_of_s1 = -17.0 * 40_f64.to_radians().cos();
+    near("C7 plumb line", behind("vc7", 0.0, 8.0) - rear_of_s1, -21.6, 31.0);
+    near("C2 before C7", behind("vc2", 0.0, 8.0) - behind("vc7", -8.0, 14.0), 18.6, 1.1 * 7.9);
+    // Raine & Twomey 1997, 160 adults: 48.9 degrees, SD 6; tragus and C7 on the skin.
+    let [c7, tragion] = ["spinous_process_c7", "tragion_r"].map(|name| spine.marker(&pose, name));
+    let angle = (tragion.y - c7.y).atan2(tragion.x - c7.x).to_degrees();
+    near("craniovertebral angle", angle, 48.9, 6.0);
+    // AnyBody's spine of a man of 1.75 m has C7-T1 466 mm above L5-S1.
+    near("C7-T1", place("vc7").y, 466.0, 15.0);
+    // Seth et al. 2019: T8 lies (-46, -183) mm from C7.
+    let t8 = (spine.marker(&pose, "spinous_process_t8") - c7) * 1e3;
+    near("T8 behind C7", t8.x, -46.0, 15.0);
+    assert!(tilt(&spine, &pose, "skull").abs() < 1e-9);
     let ribs = ["rib_1_r", "rib_6_l", "rib_12_r", "sternum"];
     for upright in ribs.map(|name| pose.segment(spine.id(name)).linear) {
         let turned = Affine::from_rotation(upright);
-        assert!(apart(turned, Affine::IDENTITY) < 1e-15);
+        assert!(apart(turned, Affine::IDENTITY) < 1e-14);
     }
 }
 
 #[test]
 fn the_left_is_the_right_in_a_mirror() {
-    let spine = Figure::alone("spine");
-    let mirror = spine.mirror(|key| !key.ends_with("_flexion"));
+    let spine = Figure::shipped("spine");
+    let mirror =
+        spine.mirror(|key| ["bending", "rotation"].iter().any(|motion| key.ends_with(motion)));
     let mut draws = Draws(0x9e37_79b9_7f4a_7c15);
     for _ in 0..100 {
         let stored = draws.inside(&spine.model);
@@ -93,7 +112,7 @@ fn the_left_is_the_right_in_a_mirror() {
 /// At the ends of a range the levels of the region make up the range, and nothing else moves.
 #[test]
 fn the_levels_make_up_the_region() {
-    let spine = Figure::alone("spine");
+    let spine = Figure::shipped("spine");
     let regions: [(&str, &[&str]); 4] = [
         ("lumbar", &LUMBAR),
         ("thoracic", &THORACIC),
@@ -110,29 +129,62 @@ fn the_levels_make_up_the_region() {
         }
     }
     // All turns of flexion lie in one plane, so there the ends of a region turn by the sum exactly.
-    let flexed =
-        [("lumbar_flexion", 52.0), ("thoracic_flexion", 15.85), ("cervical_flexion", 49.9)];
+    let flexed = [("lumbar_flexion", 52.0), ("thoracic_flexion", 15.0), ("cervical_flexion", 47.0)];
     let (pose, rest) = (spine.at(&flexed), spine.at(&[]));
-    for (name, sum) in [("vl1", 52.0), ("vt1", 52.0 + 15.85), ("vc1", 52.0 + 15.85 + 49.9)] {
-        let turned =
-            pose.segment(spine.id(name)).linear * rest.segment(spine.id(name)).linear.transpose();
+    let turned = |pose: &Pose, name: &str| {
+        pose.segment(spine.id(name)).linear * rest.segment(spine.id(name)).linear.transpose()
+    };
+    for (name, sum) in [("vl1", 52.0), ("vt1", 52.0 + 15.0), ("vc1", 52.0 + 15.0 + 47.0)] {
+        let turned = turned(&pose, name);
         let angle = -turned.at(1, 0).atan2(turned.at(0, 0)).to_degrees();
         assert!((angle - sum).abs() < 1e-9, "{name} {angle}");
     }
     // Turns of bending have axes that lie in one plane but differ, so their product is less than
     // the sum, and more than the part of each along one direction: the cosine of the largest tilt,
     // 40°.
-    let bent = spine.at(&[("lumbar_bending", 25.0), ("thoracic_bending", 30.6)]);
-    let turned =
-        bent.segment(spine.id("vt1")).linear * rest.segment(spine.id("vt1")).linear.transpose();
-    let angle = turned.log().norm().to_degrees();
-    assert!(angle < 55.6 && angle > 55.6 * 40f64.to_radians().cos(), "{angle}");
+    let bent = spine.at(&[("lumbar_bending", 19.5), ("thoracic_bending", 17.5)]);
+    let angle = turned(&bent, "vt1").log().norm().to_degrees();
+    assert!(angle < 37.0 && angle > 37.0 * 40f64.to_radians().cos(), "{angle}");
+}
+
+/// The trunk moves in proportion: 3 : 1, 3 : 2, 1 : 5 of lumbar and thoracic spine.
+#[test]
+fn the_trunk_shares_its_turns() {
+    let spine = Figure::shipped("spine");
+    let shares = [("flexion", 0, 0.75), ("bending", 1, 0.6), ("rotation", 2, 1.0 / 6.0)];
+    for (motion, axis, share) in shares {
+        let key = format!("trunk_{motion}");
+        for end in spine.range(&key) {
+            let stored = spine.degrees(&[(&key, end)]);
+            // Whole turns of the trunk are legal: both regions stay within their own ends.
+            for mode in [Mode::Open, Mode::Posed] {
+                let pose = spine.pose(&stored, mode);
+                let (_, lumbar) = each_level(&spine, &pose, &LUMBAR);
+                let (_, thoracic) = each_level(&spine, &pose, &THORACIC);
+                // Shares are written with five digits.
+                assert!((lumbar[axis] - share * end).abs() < 5e-4, "{key} {end} {lumbar:?}");
+                assert!((thoracic[axis] - (1.0 - share) * end).abs() < 5e-4, "{key} {thoracic:?}");
+            }
+        }
+        // With the regions at their ends as well the trunk goes no farther than the regions.
+        for (region, names) in [("lumbar", &LUMBAR[..]), ("thoracic", &THORACIC[..])] {
+            let own = format!("{region}_{motion}");
+            let [low, high] = spine.range(&own);
+            let whole = spine.range(&key);
+            for (all, part, end) in [(whole[0], low, low), (whole[1], high, high)] {
+                let stored = spine.degrees(&[(&key, all), (&own, part)]);
+                let pose = spine.pose(&stored, Mode::Posed);
+                let (_, sum) = each_level(&spine, &pose, names);
+                assert!((sum[axis] - end).abs() < 5e-4, "{own} {end} {sum:?}");
+            }
+        }
+    }
 }
 
 /// The published degrees of single levels.
 #[test]
 fn each_level_has_its_published_part() {
-    let spine = Figure::alone("spine");
+    let spine = Figure::shipped("spine");
     let near = |names: &[&str], pose: &[(&str, f64)], axis: usize, table: &[f64], slack: f64| {
         let (levels, _) = each_level(&spine, &spine.at(pose), names);
         for ((name, level), published) in names.iter().zip(levels).zip(table) {
@@ -142,61 +194,124 @@ fn each_level_has_its_published_part() {
     // Pearcy, Portek & Shepherd 1984, L5-S1 to L1-2.
     near(&LUMBAR, &[("lumbar_flexion", 52.0)], 0, &[9.0, 13.0, 12.0, 10.0, 8.0], 1e-9);
     near(&LUMBAR, &[("lumbar_flexion", -16.0)], 0, &[-5.0, -2.0, -1.0, -3.0, -5.0], 1e-9);
-    // Christophy et al. 2012.
-    let shares = [0.136, 0.181, 0.245, 0.250, 0.188].map(|share| 25.0 * share);
-    near(&LUMBAR, &[("lumbar_bending", 25.0)], 1, &shares, 1e-9);
+    // Pearcy & Tibrewal 1984, both sides: 3, 6, 10, 10, 10 and about 2 at every joint.
+    let bending = [1.5, 3.0, 5.0, 5.0, 5.0];
+    near(&LUMBAR, &[("lumbar_bending", 19.5)], 1, &bending, 19.5 * 0.6e-3);
+    near(&LUMBAR, &[("lumbar_rotation", 5.0)], 2, &[1.0; 5], 1e-9);
     // Ishii et al. 2004, C7-T1 to C1-2; the document has shares of four digits.
     let ishii = [1.5, 1.6, 4.0, 4.6, 4.5, 2.2, 36.2];
     near(&CERVICAL, &[("cervical_rotation", 54.6)], 2, &ishii, 54.6 * 0.5e-4);
-    // White & Panjabi 1990 in the region of Vasavada et al. 1998; rounded to 0.1 there, and one
-    // level takes what is left.
-    let scaled = |parts: [f64; 6], whole: f64, upper: f64| -> Vec<f64> {
-        let sum: f64 = parts.iter().sum();
-        parts.iter().map(|part| part * whole / sum).chain([upper]).collect()
-    };
-    let flexion = scaled([9.0, 17.0, 20.0, 20.0, 15.0, 10.0], 41.0, 20.0 * 20.0 / 45.0);
-    near(&CERVICAL, &[("cervical_flexion", 49.9)], 0, &flexion, 0.1);
-    let bending = scaled([4.0, 7.0, 8.0, 11.0, 11.0, 10.0], 33.5, 3.25);
+    // Anderst et al. 2015, whole ranges; shares of four digits.
+    let anderst = [7.0, 14.0, 17.0, 17.0, 15.0, 10.0, 10.0].map(|range| range / 2.0);
+    near(&CERVICAL, &[("cervical_flexion", 45.0)], 0, &anderst, 45.0 * 1.5e-4);
+    // White & Panjabi 1990 in the region of Vasavada et al. 1998; rounded to 0.1 there.
+    let parts = [4.0, 7.0, 8.0, 11.0, 11.0, 10.0].map(|part| part * 33.5 / 51.0);
+    let bending: Vec<f64> = parts.into_iter().chain([3.25]).collect();
     near(&CERVICAL, &[("cervical_bending", 36.75)], 1, &bending, 0.1);
-    // Wilke et al. 2017, T12-L1 to T1-2, in the regional range.
+    // Fujimori et al. 2012, T12-L1 to T1-2, one side: 1, 2.5 to 3, 1.5 to 2.5.
+    let turns: Vec<f64> =
+        [(1.0, 2), (2.75, 5), (2.0, 5)].into_iter().flat_map(|(of, n)| vec![of; n]).collect();
+    near(&THORACIC, &[("thoracic_rotation", 25.75)], 2, &turns, 0.01);
+    // Wilke et al. 2017, T12-L1 to T1-2, in the regional range of the living.
     let wilke = |low: f64, high: f64, lower: usize, region: f64| -> Vec<f64> {
         let bands: Vec<f64> = (0..12).map(|i| if i < lower { low } else { high }).collect();
         let sum: f64 = bands.iter().sum();
         bands.iter().map(|band| band * region / sum).collect()
     };
-    near(&THORACIC, &[("thoracic_bending", 30.6)], 1, &wilke(8.5, 11.0, 6, 30.6), 0.05);
-    near(&THORACIC, &[("thoracic_rotation", 34.2)], 2, &wilke(7.5, 11.0, 3, 34.2), 0.05);
-    near(&THORACIC, &[("thoracic_flexion", 15.85)], 0, &wilke(7.0, 14.0, 11, 15.85), 0.01);
+    near(&THORACIC, &[("thoracic_bending", 17.5)], 1, &wilke(8.5, 11.0, 6, 17.5), 0.01);
+    near(&THORACIC, &[("thoracic_flexion", 15.85)], 0, &wilke(7.0, 14.0, 11, 15.85), 0.02);
 }
 
-/// The point that flexion of a cervical joint leaves where it is (Mortensen et al. 2018, mm from
-/// C7-T1).
+/// Niewiadomski et al. 2019, 97 adults, of whom the ranges were not made: 127.4 degrees of flexion and
+/// extension, 89.3 of bending, 146.4 of rotation, head on thorax, within a tenth.
+#[test]
+fn the_neck_reaches_what_others_measured() {
+    let spine = Figure::shipped("spine");
+    let typical = |key: &str| {
+        let id = spine.model.find_coordinate(key).expect(key);
+        spine.model.coordinate(id).typical.expect(key).map(f64::to_degrees)
+    };
+    for (motion, axis, measured) in
+        [("flexion", 0, 127.4), ("bending", 1, 89.3), ("rotation", 2, 146.4)]
+    {
+        let keys = [format!("cervical_{motion}"), format!("head_{motion}")];
+        let ends = [0, 1].map(|end| {
+            let values: Vec<(&str, f64)> =
+                keys.iter().map(|key| (key.as_str(), typical(key)[end])).collect();
+            let rest = spine.at(&[]).segment(spine.id("skull")).linear;
+            let turned = spine.at(&values).segment(spine.id("skull")).linear * rest.transpose();
+            turns(Affine::from_rotation(turned))[axis].to_degrees()
+        });
+        let whole = ends[1] - ends[0];
+        assert!((whole / measured - 1.0).abs() < 0.1, "{motion}: {ends:?}");
+    }
+}
+
+/// A head that bends to the side still looks ahead; one that turns stays level.
+#[test]
+fn the_face_keeps_its_direction() {
+    let spine = Figure::shipped("spine");
+    let skull = |values: &[(&str, f64)]| spine.at(values).segment(spine.id("skull")).linear;
+    for bending in [-40.0, -20.0, 20.0, 40.0] {
+        let face = skull(&[("cervical_bending", bending)]) * Vec3::X;
+        let turned = (-face.z).atan2(face.x).to_degrees();
+        // 19 degrees where C1-2 does not turn back.
+        assert!(turned.abs() < 2.0, "{bending}: {turned}");
+    }
+    // Below 5 degrees at 55 (dual fluoroscopy, J Biomech 2021: 21.4 - 18.2).
+    let head = skull(&[("cervical_rotation", 55.0)]);
+    let (level, raised) = ((head * Vec3::Z).y.asin(), (head * Vec3::X).y.asin());
+    assert!(level.to_degrees().abs() < 5.0 && raised.to_degrees().abs() < 5.0, "{level} {raised}");
+}
+
+/// The neck does not turn the vertebra that carries the landmark of C7.
+#[test]
+fn c7_does_not_spin_the_head() {
+    let spine = Figure::shipped("spine");
+    let c7 = |values: &[(&str, f64)]| spine.marker(&spine.at(values), "spinous_process_c7");
+    for key in ["cervical_flexion", "cervical_bending", "cervical_rotation", "head_flexion"] {
+        for end in spine.range(key) {
+            assert_eq!(c7(&[(key, end)]), c7(&[]), "{key}");
+        }
+    }
+    // What the bone itself does there, at what people reach: no more than skin slides over it.
+    let tip = |values: &[(&str, f64)]| {
+        spine.at(values).segment(spine.id("vc7")) * Vec3::new(-0.047, 0.009, 0.0)
+    };
+    for (key, end) in [
+        ("cervical_flexion", 47.0),
+        ("cervical_flexion", -61.0),
+        ("cervical_bending", 46.5),
+        ("cervical_rotation", 70.0),
+    ] {
+        assert!((tip(&[(key, end)]) - tip(&[])).norm() < 5e-3, "{key}");
+    }
+}
+
+/// The point that flexion of a cervical joint leaves where it is: fractions of the depth, from behind,
+/// and of the height of the vertebra below (Mortensen et al. 2018 in their own meshes), of a body 16 mm
+/// deep and 13 high under a disc of 4.
 #[test]
 fn cervical_flexion_turns_about_the_published_axes() {
-    let spine = Figure::alone("spine");
-    let (rest, pose) = (spine.at(&[]), spine.at(&[("cervical_flexion", 40.0)]));
-    let base = rest.segment(spine.id("vc7")).translation;
+    let spine = Figure::shipped("spine");
+    let pose = spine.at(&[("cervical_flexion", 40.0)]);
     let table = [
-        ("vc6", 7.0, 19.7),
-        ("vc5", 7.5, 34.8),
-        ("vc4", 10.5, 51.8),
-        ("vc3", 13.0, 71.6),
-        ("vc2", 13.6, 87.0),
-        ("vc1", 15.2, 122.5),
+        ("vc6", 0.45, 1.14),
+        ("vc5", 0.15, 0.93),
+        ("vc4", 0.03, 0.76),
+        ("vc3", 0.16, 0.64),
+        ("vc2", 0.12, 0.45),
     ];
-    for (name, x, y) in table {
-        let id = spine.id(name);
-        let motion = spine.motion(&pose, id);
+    for (name, across, up) in table {
+        let motion = spine.motion(&pose, spine.id(name));
         // (I - R) c = t in the plane of x and y, with R = [[p, -s], [s, p]].
         let (p, s) = (1.0 - motion.linear.at(0, 0), motion.linear.at(1, 0));
         let t = motion.translation;
         let norm = p * p + s * s;
         let centre = Vec3::new((p * t.x - s * t.y) / norm, (s * t.x + p * t.y) / norm, 0.0);
-        // The vertebrae of the neck stand upright at rest.
-        let found = rest.segment(id).translation + centre - base;
-        let off = found - Vec3::new(x, y, 0.0) * 1e-3;
-        // Six places and a centre, each written to 0.1 mm.
-        assert!(off.norm() < 0.3e-3, "{name} {off:?}");
+        let published = Vec3::new(16.0 * (across - 0.5), 13.0 * (up - 1.0) - 2.0, 0.0) * 1e-3;
+        // Written to 0.1 mm, and 1 % smaller at this stature.
+        assert!((centre - published).norm() < 0.2e-3, "{name} {centre:?} {published:?}");
     }
 }
 
@@ -204,31 +319,35 @@ fn cervical_flexion_turns_about_the_published_axes() {
 /// sides.
 #[test]
 fn bending_and_rotation_come_together() {
-    let spine = Figure::alone("spine");
+    let spine = Figure::shipped("spine");
     let turned = spine.at(&[("cervical_rotation", 54.6)]);
     let (levels, sum) = each_level(&spine, &turned, &CERVICAL);
     // Cook et al. 2006: below C2 always the same side.
     assert!(levels[..6].iter().all(|[_, bending, rotation]| bending * rotation < 0.0));
     let head = level(&spine, &turned, "skull")[1];
-    // Eight women, J Biomech 2021: 21.4 below C2 and 18.2 above, at 55.5 degrees.
+    // Eight women, J Biomech 2021: 21.4, SD 5.1, below C2 and 18.2, SD 5.9, above, at 55.5 degrees.
     let lower = sum[1] - levels[6][1];
     let upper = levels[6][1] + head;
     let per_head = 54.6 / 55.5;
-    // Four digits of nine slopes.
-    let slack = 54.6 * 9.0 * 0.5e-4;
-    assert!((lower + 21.4 * per_head).abs() < slack, "{lower}");
-    assert!((upper - 18.2 * per_head).abs() < slack, "{upper}");
-    // So the head stays level: 5 degrees at 55.
-    assert!((lower + upper).abs() < 5.0);
+    assert!((lower + 21.4 * per_head).abs() < 5.1, "{lower}");
+    assert!((upper - 18.2 * per_head).abs() < 5.9, "{upper}");
+    // Ishii et al. 2004: C0-1 extends by 13.3 with the head turned by 69.5, whichever way.
+    for turned in [-65.0, 65.0] {
+        let pose = spine.at(&[("cervical_rotation", turned)]);
+        let extended = level(&spine, &pose, "skull")[0];
+        assert!((extended + 13.3).abs() < 0.05, "{extended}");
+    }
 
     let bent = spine.at(&[("cervical_bending", 36.75)]);
     let (levels, _) = each_level(&spine, &bent, &CERVICAL);
+    // C1-2 turns back (Ishii et al. 2006).
+    assert!(levels[6][2] > 0.0 && levels[5][2] < 0.0, "{levels:?}");
     // White & Panjabi 1990: at C7 1 of 7.5, at C2 2 of 3.
     let ratio = |[_, bending, rotation]: [f64; 3]| -rotation / bending;
     assert!((ratio(levels[0]) - 1.0 / 7.5).abs() < 1e-3, "{:?}", levels[0]);
     assert!((ratio(levels[5]) - 2.0 / 3.0).abs() < 1e-3, "{:?}", levels[5]);
 
-    let (levels, _) = each_level(&spine, &spine.at(&[("lumbar_bending", 25.0)]), &LUMBAR);
+    let (levels, _) = each_level(&spine, &spine.at(&[("lumbar_bending", 19.5)]), &LUMBAR);
     // Biomed Sci Instrum 2009;45:131: the other side, at L5-S1 the same; 0.2 of 3.4 degrees there.
     assert!(levels[1..].iter().all(|[_, bending, rotation]| bending * rotation > 0.0));
     assert!((ratio(levels[0]) - 0.2 / 3.4).abs() < 1e-3, "{:?}", levels[0]);
@@ -238,10 +357,11 @@ fn bending_and_rotation_come_together() {
 ///
 /// The angles of a level are linear in each coordinate on both sides of 0, so over a step a level
 /// turns at most by the sum of its slopes times the steps, and its origin moves at most by that
-/// times its distance from the farthest centre of rotation (the sternum's: 95 mm).
+/// times its distance from the farthest centre of rotation (the sternum's: 115 mm). The extension that
+/// comes with rotation of the neck grows with its square: at most twice the slope of the end.
 #[test]
 fn paths_are_smooth() {
-    let spine = Figure::alone("spine");
+    let spine = Figure::shipped("spine");
     let step = 0.05_f64.to_radians();
     let ids: Vec<SegmentId> = spine.model.segment_ids().collect();
     let name = |id: SegmentId| spine.model.segment(id).name.clone();
@@ -252,11 +372,16 @@ fn paths_are_smooth() {
             let pose = spine.at(&[(&coordinate.name, end)]);
             for (slot, &id) in ids.iter().enumerate() {
                 let turned: f64 = level(&spine, &pose, &name(id)).iter().map(|a| a.abs()).sum();
-                slopes[place][slot] = slopes[place][slot].max(turned / end.abs());
+                if end != 0.0 {
+                    slopes[place][slot] = slopes[place][slot].max(turned / end.abs());
+                }
             }
         }
     }
-    let lever = 0.1;
+    let lever = 0.12;
+    // A whole breath slides the sternum by 25.2 mm.
+    let (breathing, sternum) = (spine.place("breathing"), spine.id("sternum"));
+    let skull = spine.id("skull");
     let mut draws = Draws(0x1234_5678_9abc_def1);
     let mut used = 0.0_f64;
     for _ in 0..12 {
@@ -267,13 +392,15 @@ fn paths_are_smooth() {
             let pose = spine.open(&way.after(i));
             if let Some(before) = &before {
                 for (slot, &id) in ids.iter().enumerate() {
+                    let steep = if id == skull { 2.0 } else { 1.0 };
                     let bound: f64 =
-                        strides.iter().zip(&slopes).map(|(d, slope)| d * slope[slot]).sum();
+                        strides.iter().zip(&slopes).map(|(d, slope)| d * steep * slope[slot]).sum();
+                    let slid = if id == sternum { 0.0252 * strides[breathing] } else { 0.0 };
                     let (a, b) = (spine.motion(before, id), spine.motion(&pose, id));
                     let turned = (a.linear.transpose() * b.linear).log().norm();
                     let moved = (b.translation - a.translation).norm();
                     assert!(turned <= bound * (1.0 + 1e-6) + 1e-9, "{} {turned}", name(id));
-                    assert!(moved <= lever * bound + 1e-9, "{} {moved}", name(id));
+                    assert!(moved <= lever * bound + slid + 1e-9, "{} {moved}", name(id));
                     used = used.max(turned / bound.max(1e-6));
                 }
             }
@@ -287,7 +414,7 @@ fn paths_are_smooth() {
 /// Shao & Ng-Thow-Hing 2003, section 5.1: the limits of flexion, C7 to C1.
 #[test]
 fn the_neck_of_shao_and_ng_thow_hing() {
-    let shao = Figure::alone("spine-shao2003");
+    let shao = Figure::shipped("spine-shao2003");
     let limits = [
         ("vc7", -13.2, 5.5),
         ("vc6", -7.5, 5.5),
@@ -328,86 +455,5 @@ fn the_neck_of_shao_and_ng_thow_hing() {
         };
         let thorax = turned("thoracic", "vt6");
         assert!(thorax < 0.6 * turned("lumbar", "vl3") && thorax < 0.6 * turned("cervical", "vc4"));
-    }
-}
-
-/// The places of the preset are those of the spine.
-#[test]
-fn both_documents_stand_alike() {
-    let (spine, shao) = (Figure::alone("spine"), Figure::alone("spine-shao2003"));
-    for id in shao.model.segment_ids() {
-        let here = shao.model.segment(id);
-        let there = spine.model.segment(spine.id(&here.name));
-        assert_eq!(apart(here.joint_in_parent, there.joint_in_parent), 0.0, "{}", here.name);
-        assert_eq!(apart(here.joint_in_segment, there.joint_in_segment), 0.0, "{}", here.name);
-    }
-}
-
-/// Sums over 200 random postures and all segments: each entry of a transform, row by row, times the
-/// place of its segment among the names in alphabetical order.
-fn sums(spine: &Figure) -> [f64; 12] {
-    let model = &spine.model;
-    let mut segments: Vec<SegmentId> = model.segment_ids().collect();
-    segments.sort_by_key(|&id| &model.segment(id).name);
-    let mut draws = Draws(0x9e37_79b9_7f4a_7c15);
-    let mut sums = [0.0; 12];
-    for _ in 0..200 {
-        let pose = spine.open(&draws.inside(model));
-        for (place, &id) in segments.iter().enumerate() {
-            for (sum, entry) in sums.iter_mut().zip(pose.segment(id).to_rows()) {
-                *sum += (place + 1) as f64 * entry;
-            }
-        }
-    }
-    sums
-}
-
-/// The sums were computed from texts with every vertebra and rib written by hand; with the tables
-/// every entry of every pose was the same to the last bit.
-#[test]
-fn tables_pose_as_what_was_written_by_hand() {
-    let known = [
-        (
-            "spine-shao2003",
-            [
-                63141.628497498,
-                4110.69981907,
-                -695.766418931,
-                -1058.668598188,
-                -4218.699169213,
-                61631.751170063,
-                -532.302667063,
-                20217.315797666,
-                674.23169544,
-                659.123321715,
-                65196.770521817,
-                173.392170671,
-            ],
-        ),
-        (
-            "spine",
-            [
-                222290.241917647,
-                72737.146733831,
-                -2072.016953115,
-                16095.073059122,
-                -72738.805263406,
-                216060.326702856,
-                442.117262838,
-                79745.852566048,
-                154.46859926,
-                -524.745759498,
-                243215.233175586,
-                -95.389874579,
-            ],
-        ),
-    ];
-    for (name, known) in known {
-        let found = sums(&Figure::alone(name));
-        for (found, known) in found.iter().zip(known) {
-            // 10 000 terms up to 50 and sums up to 2e5, with other roundings of sines elsewhere. A
-            // vertebra that turns by a thousandth of a degree more changes a sum by some 0.01.
-            assert!((found - known).abs() < 1e-7, "{name} {found} {known}");
-        }
     }
 }

@@ -41,6 +41,7 @@ pub(super) fn to_json(model: &Model) -> Value {
                 "default": default,
                 "range": [coordinate.range.lower, coordinate.range.upper],
                 "clamped": coordinate.range.enforced,
+                "typical": coordinate.typical,
                 "circle": circles.contains(&id),
                 "locked": coordinate.locked,
                 "follows": leader_keys(model, id, &keys),
@@ -259,6 +260,11 @@ fn coordinate_rows(model: &Model) -> Vec<Vec<String>> {
             let mut marks = vec![];
             if coordinate.range.enforced {
                 marks.push("clamped".to_owned());
+            }
+            if let Some([low, high]) = coordinate.typical {
+                let far = low.abs().max(high.abs()) >= 1.0;
+                let [low, high] = [low, high].map(|v| amount(coordinate.kind, v, far));
+                marks.push(format!("people reach {low} to {high}"));
             }
             if circles.contains(&id) {
                 marks.push("a circle".to_owned());

@@ -224,7 +224,12 @@ impl Resolver<'_> {
         for m in &draft.markers {
             self.places.insert(Subject::Marker(m.name.text.clone()), m.name.spot);
             let (segment, point) = self.place(&m.place, &draft.markers).unwrap_or_default();
-            self.builder.marker(&m.name.text, segment, point);
+            match &m.place {
+                PlaceDraft::Marker(like, Vec3::ZERO) => {
+                    self.builder.marker_like(&m.name.text, &like.text, segment, point);
+                }
+                _ => self.builder.marker(&m.name.text, segment, point),
+            }
         }
         for s in draft.shapes {
             self.places.insert(Subject::Shape(s.name.text.clone()), s.name.spot);

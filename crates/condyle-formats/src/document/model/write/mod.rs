@@ -99,6 +99,14 @@ impl Writer<'_> {
         }
         for marker in model.markers() {
             line!(self, "\n[marker.{}]", key(&marker.name));
+            if let Some(like) = &marker.like
+                && model.markers().iter().any(|m| {
+                    m.name == *like && (m.segment, m.point) == (marker.segment, marker.point)
+                })
+            {
+                line!(self, "like = {}", text(like));
+                continue;
+            }
             if let Some(segment) = marker.segment {
                 line!(self, "segment = {}", text(&model.segment(segment).name));
             }

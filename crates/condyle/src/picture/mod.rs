@@ -1,0 +1,27 @@
+//! Still pictures of a model: what is shown of a pose, from where, and several of them in one picture.
+//!
+//! Each file here adds one kind of thing to a [`Scene`](condyle_render::Scene): it reads a posed figure
+//! and never changes it, and what it cannot draw it leaves out.
+//!
+//! ```
+//! use condyle::{open, picture};
+//! let model = open::model("knee".as_ref())?.value;
+//! let poses = vec![picture::Posed::new(vec![0.0]), picture::Posed::new(vec![1.2])];
+//! let sheet = picture::Sheet { size: [320, 200], ..picture::Sheet::new(poses) };
+//! let drawn = picture::draw(&model, &sheet)?;
+//! assert_eq!((drawn.width(), drawn.height()), (320, 200));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod bones;
+mod figure;
+mod focus;
+mod marks;
+mod sheet;
+mod show;
+mod view;
+
+pub use focus::Focus;
+pub use sheet::{Posed, Sheet, draw};
+pub use show::Show;
+pub use view::View;
