@@ -26,9 +26,9 @@ fn nothing_to_remark() {
         legs.assert_unremarked();
         legs.assert_sourced();
     }
-    // They include their knee and nothing else.
+    // They include sizes, knee and bones and nothing else.
     let copy = shipped::standalone("legs").expect("it is shipped");
-    assert!(copy.contains("\n# Written out with parts/knee-human.toml, in metres"));
+    assert!(copy.contains("\n# Written out with parts/body.toml, parts/knee-human.toml, parts/leg-bones.toml, in metres"));
 }
 
 #[test]
