@@ -2,7 +2,7 @@
 
 use super::figure::Figure;
 use super::focus::{Chosen, Focus};
-use super::{Show, View, bones, marks, view};
+use super::{Show, View, axes, bones, contacts, limits, marks, view};
 use condyle_diagnostics::Error;
 use condyle_math::Vec3;
 use condyle_model::{Jacobian, Model, Pose, Program};
@@ -139,10 +139,23 @@ fn scene(figure: &Figure, show: &[Show]) -> Scene {
     if shows(Show::Frames) {
         marks::frames(figure, &mut scene);
     }
+    let named = shows(Show::Names);
+    if shows(Show::Axes) {
+        axes::axes(figure, named, &mut scene);
+    }
+    if shows(Show::Centres) {
+        axes::centres(figure, &mut scene);
+    }
+    if shows(Show::Limits) {
+        limits::limits(figure, named, &mut scene);
+    }
+    if shows(Show::Contacts) {
+        contacts::contacts(figure, named, &mut scene);
+    }
     if shows(Show::Markers) {
         marks::markers(figure, &mut scene);
     }
-    if shows(Show::Names) {
+    if named {
         marks::names(figure, shows(Show::Markers), &mut scene);
     }
     scene

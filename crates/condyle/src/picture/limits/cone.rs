@@ -1,0 +1,160 @@
+//! A reach cone: the directions in which a bone may point, as a part of a sphere about its joint. Its shade
+//! tells how far the bone may twist there: yellow the least of this cone, green-blue the most.
+
+use super::super::figure::Figure;
+use super::super::marks::line;
+use super::{OPACITY, fan, value};
+use condyle_math::{Mat3, Quat, Vec3};
+use condyle_model::component::{JointCone, Swinging};
+use condyle_model::evaluate::Bound;
+use condyle_model::{Cone, SegmentId};
+use condyle_render::{Scene, Surface, palette, shape};
+
+/// Parts of the way from rest to the boundary, and shades.
+const RINGS: usize = 12;
+const SHADES: usize = 16;
+
+/// Draws a cone.
+pub(super) fn draw(figure: &Figure, bound: &Bound, law: &JointCone, scene: &mut Scene) {
+    let Some(rotation) = rotation(law, &figure.pose.bounded(bound).collect::<Vec<f64>>()) else {
+        return;
+    };
+    let set = figure.model.components()[bound.component.index()].joint_set;
+    let Some((segment, frame)) = frame(figure, set, law, rotation) else { return };
+    if !figure.is_signed(segment) {
+        return;
+    }
+    let centre = figure.joint(segment).translation;
+    let bone = (figure.far_end(segment) - centre).norm();
+    let radius = (0.45 * bone).clamp(1.5 * figure.unit, 4.0 * figure.unit);
+    let place = |direction: Vec3| centre + frame * direction * radius;
+    let cone = &law.cone;
+    let mut boundary: Vec<Vec3> = cone.boundary().collect();
+    boundary.extend(boundary.first().copied());
+    scene.surfaces.extend(sphere(cone, &boundary, &place));
+    let edge: Vec<Vec3> = boundary.iter().map(|&direction| place(direction)).collect();
+    scene.surfaces.push(fan(centre, &edge, palette::LIMIT).with_opacity(0.4 * OPACITY));
+    scene.lines.push(line(edge, 2.0, palette::LIMIT));
+    let now = place(rotation * cone.rest().normalized());
+    scene.lines.push(value(centre, now));
+    let mut mark = Surface::empty(palette::VALUE);
+    shape::add_ball(&mut mark, now, 0.08 * figure.unit, (14, 10));
+    scene.surfaces.push(mark);
+}
+
+/// The part of the sphere, a surface for each shade.
+fn sphere(cone: &Cone, boundary: &[Vec3], place: &dyn Fn(Vec3) -> Vec3) -> Vec<Surface> {
+    let rest = cone.rest().normalized();
+    let width = |direction: Vec3| cone.twist_bounds(direction).map(|([low, high], _)| high - low);
+    let rows: Vec<Vec<Vec3>> = (0..=RINGS)
+        .map(|ring| {
+            let share = ring as f64 / RINGS as f64;
+            boundary.iter().map(|&end| between(rest, end, share)).collect()
+        })
+        .collect();
+    let middle = |ring: usize, i: usize| {
+        let (inner, outer) = (&rows[ring], &rows[ring + 1]);
+        (inner[i] + inner[i + 1] + outer[i] + outer[i + 1]).normalized()
+    };
+    let patches = || {
+        let along = boundary.len().saturating_sub(1);
+        (0..RINGS).flat_map(move |ring| (0..along).map(move |i| (ring, i)))
+    };
+    let widths: Vec<Option<f64>> = patches().map(|(ring, i)| width(middle(ring, i))).collect();
+    let known = || widths.iter().flatten().copied().filter(|w| w.is_finite());
+    let (low, high) = (known().fold(f64::INFINITY, f64::min), known().fold(0.0, f64::max));
+    let mut shades: Vec<Surface> = (0..SHADES)
+        .map(|shade| {
+            let share = shade as f64 / (SHADES - 1) as f64;
+            let mixed = [0, 1, 2].map(|i| {
+                let [from, to] = [palette::LIMIT_LOW[i], palette::LIMIT[i]].map(f64::from);
+                (from + (to - from) * share).round() as u8
+            });
+            Surface::empty(mixed).with_opacity(1.4 * OPACITY)
+        })
+        .collect();
+    for ((ring, i), width) in patches().zip(&widths) {
+        let share = match width {
+            Some(width) if high > low + 1e-9 => (width - low) / (high - low),
+            _ => 1.0,
+        };
+        let shade = (share * (SHADES - 1) as f64).round().clamp(0.0, (SHADES - 1) as f64);
+        let surface = &mut shades[shade as usize];
+        let corners = [(ring, i), (ring + 1, i), (ring + 1, i + 1), (ring, i + 1)];
+        let [a, b, c, d] = corners.map(|(ring, i)| {
+            let direction = rows[ring][i];
+            let at = place(direction);
+            surface.corner(at, at - place(Vec3::ZERO))
+        });
+        if ring > 0 {
+            surface.triangles.push([a, c, d]);
+        }
+        surface.triangles.push([a, b, c]);
+    }
+    shades.retain(|surface| !surface.triangles.is_empty());
+    shades
+}
+
+/// A direction on the great arc between two.
+fn between(from: Vec3, to: Vec3, share: f64) -> Vec3 {
+    let angle = from.cross(to).norm().atan2(from.dot(to));
+    let whole = angle.sin();
+    if whole < 1e-9 {
+        return from;
+    }
+    from * (((1.0 - share) * angle).sin() / whole) + to * ((share * angle).sin() / whole)
+}
+
+/// The rotation that a cone limits, of the numbers at its ports.
+fn rotation(law: &JointCone, numbers: &[f64]) -> Option<Mat3> {
+    let turn =
+        |(axis, angle): (&Vec3, &f64)| Mat3::rotation_about(axis.normalized(), angle.sin_cos());
+    let product = |axes: &[Vec3]| {
+        let turns = axes.iter().zip(numbers).map(turn);
+        turns.fold(Mat3::IDENTITY, |all, turn| all * turn)
+    };
+    let found = match &law.of {
+        Swinging::Angles(axes) => product(axes),
+        Swinging::Directions(axes) => product(axes),
+        Swinging::Orientation => {
+            let &[x, y, z, w] = numbers else { return None };
+            Quat { x, y, z, w }.to_mat3()
+        }
+    };
+    found.x.is_finite().then_some(found)
+}
+
+/// The segment that the rotation turns, and the frame in the world in which it does: that of an ancestor with
+/// its joint, or of the world, in which the segment is turned as the cone says. Where there is none, the one
+/// in which the bone points as it says.
+fn frame(
+    figure: &Figure,
+    set: condyle_model::JointSetId,
+    law: &JointCone,
+    rotation: Mat3,
+) -> Option<(SegmentId, Mat3)> {
+    let model = figure.model;
+    let mut best: Option<(f64, SegmentId, Mat3)> = None;
+    for (id, _) in model.outputs_of(set) {
+        let own = figure.joint(id).linear;
+        let segment = model.segment(id);
+        let hung = figure.pose.frame(segment.parent).linear;
+        let ancestors = model.path_to_root(id).skip(1).map(|id| figure.pose.segment(id).linear);
+        let frames = [hung * segment.joint_in_parent.linear, hung, figure.pose.frame(None).linear];
+        for frame in frames.into_iter().chain(ancestors) {
+            let off = match law.of {
+                Swinging::Directions(_) => {
+                    let rest = law.cone.rest().normalized();
+                    (own * rest - frame * (rotation * rest)).norm()
+                }
+                _ => ((frame * rotation).transpose() * own).log().norm(),
+            };
+            if off.is_finite() && best.as_ref().is_none_or(|(least, ..)| off < *least - 1e-9) {
+                best = Some((off, id, frame));
+            }
+        }
+    }
+    let (off, id, frame) = best?;
+    let forced = figure.joint(id).linear * rotation.transpose();
+    Some((id, if off < 0.02 { frame } else { forced }))
+}
