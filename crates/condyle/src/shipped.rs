@@ -49,6 +49,7 @@ const PARTS: &[(&str, &str)] = &[
     ("parts/head.toml", include_str!("../models/parts/head.toml")),
     ("parts/human-markers.toml", include_str!("../models/parts/human-markers.toml")),
     ("parts/knee-human.toml", include_str!("../models/parts/knee-human.toml")),
+    ("parts/leg-bones.toml", include_str!("../models/parts/leg-bones.toml")),
     ("parts/rib-cage.toml", include_str!("../models/parts/rib-cage.toml")),
     ("parts/vertebrae.toml", include_str!("../models/parts/vertebrae.toml")),
 ];

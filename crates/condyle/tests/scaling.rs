@@ -33,10 +33,9 @@ foot = { segments = ["talus_r", "calcaneus_r", "toes_r"] }
 const TRUTH: [f64; 4] = [1.0, 1.1, 0.95, 1.05];
 
 fn read(text: &str) -> Model {
-    let include = &mut |path: &str| match path {
-        "knee.toml" => Ok(KNEE.to_owned()),
-        "legs.toml" => Ok(LEGS.to_owned()),
-        other => Err(format!("`{other}` is not here")),
+    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+    let include = &mut |path: &str| {
+        std::fs::read_to_string(models.join(path)).map_err(|error| error.to_string())
     };
     document::read(text, include).expect("a model").value.model
 }

@@ -99,19 +99,20 @@ impl Ellipse {
             // p = (a²x/(t + a²), b²y/(t + b²)) is on the ellipse for one t > -b²: with t = b²(s - 1),
             // (n·z₁/(s + n - 1))² + (z₂/s)² = 1, n = (a/b)², z = (x/a, y/b), which falls in s.
             let (z, n) = ([x / a, y / b], (a / b) * (a / b));
-            let value = |s: f64| {
+            // It is convex there, so that Newton's steps from below never pass the root; a start where
+            // one term alone is 1 is below it.
+            let mut s = z[1].max(n * (z[0] - 1.0) + 1.0);
+            for _ in 0..100 {
                 let (first, second) = (n * z[0] / (s + n - 1.0), z[1] / s);
-                first * first + second * second - 1.0
-            };
-            let (mut low, mut high) = (z[1], (n * z[0]).hypot(z[1]).max(z[1]));
-            for _ in 0..200 {
-                let middle = 0.5 * (low + high);
-                if middle <= low || middle >= high {
+                let value = first * first + second * second - 1.0;
+                let slope = first * first / (s + n - 1.0) + second * second / s;
+                let next = s + 0.5 * value / slope;
+                // No further step: as near as rounding lets it.
+                if next.is_nan() || next <= s {
                     break;
                 }
-                if value(middle) > 0.0 { low = middle } else { high = middle }
+                s = next;
             }
-            let s = 0.5 * (low + high);
             [n * x / (s + n - 1.0), y / s]
         } else {
             // On the long axis: beside the foci the vertex is nearest, between them two points.

@@ -2,6 +2,7 @@
 
 mod arms;
 mod figure;
+mod hands;
 mod human;
 mod knee;
 mod lanes;
