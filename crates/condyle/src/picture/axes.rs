@@ -45,6 +45,9 @@ fn moved(figure: &Figure, id: SegmentId) -> Vec<(usize, condyle_math::Twist)> {
 /// How far the centre of a fixed axis moves at most, in metres.
 const FIXED: f64 = 2e-4;
 
+/// A centre that is farther from its joint is not drawn, in metres: the segment all but glides.
+const FAR: f64 = 0.15;
+
 /// The moving centre of every joint: where the axis of each coordinate meets the plane across it through the
 /// joint, now and over the coordinate's range.
 ///
@@ -59,14 +62,17 @@ pub(super) fn centres(figure: &Figure, scene: &mut Scene) {
             let Some(Motion::Turn { axis, centre, .. }) = Motion::of(twist, joint) else {
                 continue;
             };
-            shape::add_ball(&mut now, centre, 0.12 * figure.unit, (16, 10));
             let Some(&coordinate) = owners.get(direction) else { continue };
-            let path = path(figure, &mut sweep, coordinate, (id, direction), (joint, axis));
-            let span = path.iter().map(|p| (*p - centre).norm()).fold(0.0, f64::max);
+            if (centre - joint).norm() > FAR {
+                continue;
+            }
+            let runs = path(figure, &mut sweep, coordinate, (id, direction), (joint, axis));
+            shape::add_ball(&mut now, centre, 0.08 * figure.unit, (16, 10));
+            let span = runs.iter().flatten().map(|p| (*p - centre).norm()).fold(0.0, f64::max);
             if span > FIXED {
                 let [from, to] = [-0.6, 0.6].map(|s| centre + axis * (s * figure.unit));
                 scene.lines.push(line(vec![from, to], 1.5, palette::MOTION));
-                scene.lines.push(line(path, 3.0, palette::MOTION));
+                scene.lines.extend(runs.into_iter().map(|run| line(run, 3.0, palette::MOTION)));
             }
         }
     }
@@ -80,8 +86,8 @@ fn path(
     coordinate: CoordinateId,
     (id, direction): (SegmentId, usize),
     (joint, axis): (Vec3, Vec3),
-) -> Vec<Vec3> {
-    let mut points = vec![];
+) -> Vec<Vec<Vec3>> {
+    let mut runs = vec![vec![]];
     let parent = figure.model.segment(id).parent;
     let now = figure.pose.frame(parent);
     for value in sweep.values(coordinate) {
@@ -96,10 +102,14 @@ fn path(
         };
         let (turned, centre) = (carried.linear * turned, carried * centre);
         let slope = turned.dot(axis);
+        let met = centre + turned * ((joint - centre).dot(axis) / slope);
         // An axis that lies in the plane does not meet it.
-        if slope.abs() > 0.3 {
-            points.push(centre + turned * ((joint - centre).dot(axis) / slope));
+        let good = slope.abs() > 0.3 && (met - joint).norm() < FAR;
+        match runs.last_mut() {
+            Some(run) if good => run.push(met),
+            Some(run) if !run.is_empty() => runs.push(vec![]),
+            _ => {}
         }
     }
-    points
+    runs
 }

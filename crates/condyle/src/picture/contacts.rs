@@ -10,7 +10,7 @@ use condyle_render::{Scene, Surface, palette, shape};
 /// A gap of more than this is coloured as broken where no other is allowed, in metres.
 const TOUCHING: f64 = 1e-4;
 
-const OPACITY: f64 = 0.25;
+const OPACITY: f64 = 0.14;
 
 /// All contacts of the segments that are looked at.
 pub(super) fn contacts(figure: &Figure, named: bool, scene: &mut Scene) {

@@ -105,8 +105,8 @@ fn tidy(x: f64) -> f64 {
     if rounded == 0.0 { 0.0 } else { rounded }
 }
 
-/// What a coordinate moves most, and in what: of the segments of its joint set the one that turns or glides
-/// most in the parent of the first of them.
+/// What a coordinate moves, and in what: of the segments of its joint set the first, or where another turns or
+/// glides more than twice as much in the parent of the first, the one that does most.
 fn moved(figure: &Figure, id: CoordinateId) -> Option<(SegmentId, Option<SegmentId>, Motion)> {
     let model = figure.model;
     let direction = model.tangent_range(id).start;
@@ -122,6 +122,12 @@ fn moved(figure: &Figure, id: CoordinateId) -> Option<(SegmentId, Option<Segment
     let first = own.iter().copied().find(|&s| turning(s, model.segment(s).parent).is_some())?;
     let base = model.segment(first).parent;
     let motions = own.into_iter().filter_map(|s| Some((s, turning(s, base)?)));
+    let motions: Vec<(SegmentId, Motion)> = motions.collect();
+    let most = motions.iter().map(|(_, m)| m.size()).fold(0.0, f64::max);
+    if let Some(&(segment, motion)) = motions.first().filter(|(_, m)| m.size() > 0.5 * most) {
+        return Some((segment, base, motion));
+    }
+    let motions = motions.into_iter();
     let turns = motions.clone().any(|(_, m)| matches!(m, Motion::Turn { .. }));
     // Of equals the last is the farthest out.
     let (segment, motion) = motions

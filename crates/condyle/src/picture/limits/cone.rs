@@ -7,7 +7,7 @@ use super::{OPACITY, fan, value};
 use condyle_math::{Mat3, Quat, Vec3};
 use condyle_model::component::{JointCone, Swinging};
 use condyle_model::evaluate::Bound;
-use condyle_model::{Cone, SegmentId};
+use condyle_model::{Cone, Mode, Pose, SegmentId};
 use condyle_render::{Scene, Surface, palette, shape};
 
 /// Parts of the way from rest to the boundary, and shades.
@@ -19,8 +19,7 @@ pub(super) fn draw(figure: &Figure, bound: &Bound, law: &JointCone, scene: &mut 
     let Some(rotation) = rotation(law, &figure.pose.bounded(bound).collect::<Vec<f64>>()) else {
         return;
     };
-    let set = figure.model.components()[bound.component.index()].joint_set;
-    let Some((segment, frame)) = frame(figure, set, law, rotation) else { return };
+    let Some((segment, frame)) = frame(figure, bound, law, rotation) else { return };
     if !figure.is_signed(segment) {
         return;
     }
@@ -124,37 +123,59 @@ fn rotation(law: &JointCone, numbers: &[f64]) -> Option<Mat3> {
     found.x.is_finite().then_some(found)
 }
 
-/// The segment that the rotation turns, and the frame in the world in which it does: that of an ancestor with
-/// its joint, or of the world, in which the segment is turned as the cone says. Where there is none, the one
-/// in which the bone points as it says.
-fn frame(
-    figure: &Figure,
-    set: condyle_model::JointSetId,
-    law: &JointCone,
-    rotation: Mat3,
-) -> Option<(SegmentId, Mat3)> {
+/// The segment that the rotation turns, and the frame in the world in which it does: that of an ancestor, with
+/// its joint, or of the world.
+///
+/// Found by comparing: in this pose and in one beside it, the segment has to be turned in the frame as the
+/// cone says, or its bone to point there. Where no frame does, the one that this pose alone gives.
+fn frame(figure: &Figure, bound: &Bound, law: &JointCone, now: Mat3) -> Option<(SegmentId, Mat3)> {
     let model = figure.model;
     let mut best: Option<(f64, SegmentId, Mat3)> = None;
+    let set = model.components()[bound.component.index()].joint_set;
+    let beside = beside(figure)?;
+    let turned = rotation(law, &beside.bounded(bound).collect::<Vec<f64>>())?;
     for (id, _) in model.outputs_of(set) {
-        let own = figure.joint(id).linear;
-        let segment = model.segment(id);
-        let hung = figure.pose.frame(segment.parent).linear;
-        let ancestors = model.path_to_root(id).skip(1).map(|id| figure.pose.segment(id).linear);
-        let frames = [hung * segment.joint_in_parent.linear, hung, figure.pose.frame(None).linear];
-        for frame in frames.into_iter().chain(ancestors) {
-            let off = match law.of {
-                Swinging::Directions(_) => {
-                    let rest = law.cone.rest().normalized();
-                    (own * rest - frame * (rotation * rest)).norm()
-                }
-                _ => ((frame * rotation).transpose() * own).log().norm(),
-            };
-            if off.is_finite() && best.as_ref().is_none_or(|(least, ..)| off < *least - 1e-9) {
+        let frames = frames(figure, figure.pose, id);
+        for (frame, then) in frames.into_iter().zip(self::frames(figure, &beside, id)) {
+            let own = |pose: &Pose| (pose.segment(id) * model.segment(id).joint_in_segment).linear;
+            let off =
+                off(law, own(figure.pose), frame * now) + off(law, own(&beside), then * turned);
+            if off.is_finite() && best.as_ref().is_none_or(|(least, ..)| off < *least - 1e-6) {
                 best = Some((off, id, frame));
             }
         }
     }
     let (off, id, frame) = best?;
-    let forced = figure.joint(id).linear * rotation.transpose();
+    let forced = figure.joint(id).linear * now.transpose();
     Some((id, if off < 0.02 { frame } else { forced }))
+}
+
+/// How far a rotation is from what a cone speaks of: in all, or in where the bone points.
+fn off(law: &JointCone, own: Mat3, said: Mat3) -> f64 {
+    match law.of {
+        Swinging::Directions(_) => {
+            let rest = law.cone.rest().normalized();
+            (own * rest - said * rest).norm()
+        }
+        _ => (said.transpose() * own).log().norm(),
+    }
+}
+
+/// The frames in which a segment may be turned.
+fn frames(figure: &Figure, pose: &Pose, id: SegmentId) -> Vec<Mat3> {
+    let segment = figure.model.segment(id);
+    let hung = pose.frame(segment.parent).linear;
+    let ancestors = figure.model.path_to_root(id).skip(1).map(|id| pose.segment(id).linear);
+    let joint = [hung * segment.joint_in_parent.linear, hung];
+    joint.into_iter().chain(ancestors).chain([pose.frame(None).linear]).collect()
+}
+
+/// A pose in which everything is turned a little, each coordinate by another amount.
+fn beside(figure: &Figure) -> Option<Pose> {
+    let model = figure.model;
+    let step: Vec<f64> = (0..model.tangent_len()).map(|i| 0.1 + 0.03 * (i % 7) as f64).collect();
+    let mut stored = figure.stored.to_vec();
+    model.retract(figure.stored, &step, &mut stored);
+    let mut pose = Pose::new(figure.program);
+    figure.program.evaluate(&stored, Mode::Open, &mut pose).ok().map(|()| pose)
 }
