@@ -48,7 +48,6 @@ fn hue(pixel: palette::Colour) -> [f64; 3] {
 
 #[test]
 fn a_sphere_covers_pi_r_squared() {
-    // Lines are not lit, so a fan of lines would be exact; a sphere is lit, and what differs is counted.
     let scene = only(shape::ball([0.0; 3], 0.4, [0, 0, 0]));
     let picture = render(&scene, &front(1.0), 400, 400);
     let differs = picture.pixels().iter().filter(|p| **p != palette::BACKGROUND).count();
@@ -195,10 +194,7 @@ fn what_is_framed_fits_and_fills() {
             let camera = camera.framing(&bounds, aspect, 0.05);
             let seen: Vec<[f64; 3]> = bounds.corners().iter().map(|&c| camera.seen(c)).collect();
             let most = |i: usize| seen.iter().map(|p| p[i].abs()).fold(0.0, f64::max);
-            let free = [
-                0.5 * aspect - most(0) / camera.height,
-                0.5 - most(1) / camera.height,
-            ];
+            let free = [0.5 * aspect - most(0) / camera.height, 0.5 - most(1) / camera.height];
             let least = free[0].min(free[1]);
             assert!((least - 0.05).abs() < 1e-12, "{free:?} of {aspect}");
         }

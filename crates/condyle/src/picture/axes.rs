@@ -113,3 +113,70 @@ fn path(
     }
     runs
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::figure::tests::{model, seen};
+    use super::*;
+
+    #[test]
+    fn a_wheel_turns_about_the_point_that_touches_the_ground() {
+        // A wheel of 50 mm whose middle is at 0 when it has turned by 0. Turned by a it is at 0.05·a, and its
+        // centre of rotation is its lowest point.
+        let wheel = model(
+            r#"
+            condyle = 1
+            kind = "model"
+            [segment.wheel]
+            at = [0, 1, 0]
+            [joint_set.wheel]
+            coordinate.a = { range = [-1, 1] }
+            component.far.map = { input = "a", function = { linear = [0.05, 0] } }
+            component.go.translate = { distance = "far", axis = [1, 0, 0] }
+            component.turn.rotate = { angle = "a", axis = [0, 0, -1] }
+            output.wheel = ["go", "turn"]
+            "#,
+        );
+        seen(&wheel, &[0.4], |figure| {
+            let mut scene = Scene::default();
+            centres(figure, &mut scene);
+            let [axis, path] = &scene.lines[..] else { panic!("an axis and a path") };
+            assert!((axis.points[0][0] - 0.02).abs() < 1e-12);
+            assert_eq!(path.points.len(), 49);
+            for (index, point) in path.points.iter().enumerate() {
+                let expected = [0.05 * (-1.0 + index as f64 / 24.0), 0.95, 0.0];
+                for (found, expected) in point.iter().zip(expected) {
+                    assert!((found - expected).abs() < 1e-12, "{index}: {point:?}");
+                }
+            }
+        });
+    }
+
+    #[test]
+    fn a_hinge_stays_where_it_is() {
+        let hinge = model(
+            r#"
+            condyle = 1
+            kind = "model"
+            [segment.a]
+            [segment.b]
+            parent = "a"
+            at = [0, -0.4, 0]
+            [joint.b]
+            type = "hinge"
+            segment = "b"
+            axis = [0, 0, 1]
+            coordinate.angle = { range = [0, 1] }
+            "#,
+        );
+        seen(&hinge, &[0.3], |figure| {
+            let mut scene = Scene::default();
+            centres(figure, &mut scene);
+            assert!(scene.lines.is_empty(), "a fixed centre has no path");
+            axes(figure, true, &mut scene);
+            // From 5 cm behind the joint to 5 cm before it.
+            assert_eq!(scene.lines[0].points, [[0.0, -0.4, -0.05], [0.0, -0.4, 0.05]]);
+            assert_eq!(scene.labels[0].text, "angle");
+        });
+    }
+}

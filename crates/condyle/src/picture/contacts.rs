@@ -110,3 +110,64 @@ fn normal(frame: &Affine, radii: Vec3, place: Vec3) -> Vec3 {
     let length = steep.norm();
     if length > 1e-12 { frame.linear * (steep * length.recip()) } else { Vec3::ZERO }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::figure::tests::seen;
+    use super::*;
+
+    /// Where a point is against the ellipsoid: 1 on it.
+    fn level(frame: &Affine, radii: Vec3, place: Vec3) -> f64 {
+        let own = frame.linear.transpose() * (place - frame.translation);
+        Vec3::new(own.x / radii.x, own.y / radii.y, own.z / radii.z).norm()
+    }
+
+    #[test]
+    fn points_that_touch_are_on_the_ellipsoid_and_a_gap_leads_to_it() {
+        let shoulder = crate::shipped::read("shoulder").expect("it is shipped").value.model;
+        let plane = shoulder.find_coordinate("shoulder_elevation_r").expect("a coordinate");
+        let mut joined = 0;
+        for elevation in [0.0, 0.6, 1.4] {
+            let mut stored = shoulder.defaults();
+            *shoulder.value_mut(&mut stored, plane) = elevation;
+            seen(&shoulder, &stored, |figure| {
+                let mut scene = Scene::default();
+                contacts(figure, false, &mut scene);
+                for (number, id) in figure.program.contacts().enumerate() {
+                    let component = &shoulder.components()[id.index()];
+                    let Law::Contact(law) = &component.law else { continue };
+                    let surface = component.segments_at("surface").next();
+                    let frame = figure.pose.frame(surface) * law.law.ellipsoid_in_surface();
+                    let gaps = figure.pose.contact(number).expect("a report").gaps;
+                    let lines = scene.lines.iter().filter(|l| l.colour == palette::CONTACT);
+                    for line in lines {
+                        let ends = [0, 1].map(|i| Vec3::from(line.points[i]));
+                        let levels = ends.map(|end| level(&frame, law.law.radii(), end) - 1.0);
+                        // Of one of the two contacts, on the right or left.
+                        if (levels[0].abs() < 1e-9) == (gaps[0].abs() < TOUCHING)
+                            && levels[1].abs() < 1e-9
+                            && gaps[1].abs() < TOUCHING
+                        {
+                            joined += 1;
+                        }
+                    }
+                }
+            });
+        }
+        assert!(joined >= 3, "{joined} pairs on the ribs");
+    }
+
+    #[test]
+    fn the_normal_is_that_of_the_surface() {
+        let frame = Affine::new(Mat3::rotation_y(0.7), Vec3::new(0.1, 0.2, 0.3));
+        let radii = Vec3::new(0.1, 0.2, 0.15);
+        // A point that is 3 mm outside along the normal of its foot.
+        let foot = Vec3::new(0.6 * radii.x, 0.0, 0.8 * radii.z);
+        let steep = Vec3::new(foot.x / 0.01, 0.0, foot.z / 0.0225).normalized();
+        let place = frame * (foot + steep * 0.003);
+        let back = place - normal(&frame, radii, place) * 0.003;
+        // The shape through the point is only nearly the same: off by the square of the gap.
+        assert!((level(&frame, radii, back) - 1.0).abs() < 1e-3);
+        assert!((back - frame * foot).norm() < 3e-4);
+    }
+}

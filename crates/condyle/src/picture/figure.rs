@@ -81,3 +81,33 @@ impl Figure<'_> {
         self.chosen.is_none_or(|chosen| chosen.has(segment))
     }
 }
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// Looks at a model in a pose, with signs of 5 cm.
+    pub(in super::super) fn seen(model: &Model, stored: &[f64], look: impl FnOnce(&Figure)) {
+        let program = Program::compile(model);
+        let (mut pose, mut jacobian) = (Pose::new(&program), Jacobian::new(&program));
+        program.evaluate_with_jacobian(stored, &mut pose, &mut jacobian).expect("its length");
+        let surfaces = crate::Figure::new(model);
+        look(&Figure {
+            model,
+            program: &program,
+            stored,
+            pose: &pose,
+            jacobian: &jacobian,
+            surfaces: &surfaces,
+            chosen: None,
+            highlight: false,
+            unit: 0.05,
+        });
+    }
+
+    /// A document as a model.
+    pub(in super::super) fn model(text: &str) -> Model {
+        let read = condyle_formats::document::read(text, &mut |_| Err("alone".into()));
+        read.expect("a model").value.model
+    }
+}

@@ -105,33 +105,116 @@ fn tidy(x: f64) -> f64 {
     if rounded == 0.0 { 0.0 } else { rounded }
 }
 
-/// What a coordinate moves, and in what: of the segments of its joint set the first, or where another turns or
-/// glides more than twice as much in the parent of the first, the one that does most.
+/// What a coordinate moves, and in what: the segment of its joint set that carries most others, of those that
+/// turn or glide at least half as much as any in the parent of the first.
 fn moved(figure: &Figure, id: CoordinateId) -> Option<(SegmentId, Option<SegmentId>, Motion)> {
     let model = figure.model;
     let direction = model.tangent_range(id).start;
     let set = model.coordinate(id).joint_set;
-    let turning = |segment: SegmentId, base: Option<SegmentId>| {
+    let motion = |segment: SegmentId, base: Option<SegmentId>| {
         let twists = twists(figure.program, figure.jacobian, segment, base);
         let found = twists.into_iter().find(|(d, _)| *d == direction)?.1;
         Motion::of(found, figure.joint(segment).translation)
     };
     let order = model.parents_first();
-    let own: Vec<SegmentId> =
-        order.into_iter().filter(|&s| model.segment(s).joint_set == Some(set)).collect();
-    let first = own.iter().copied().find(|&s| turning(s, model.segment(s).parent).is_some())?;
+    let own = order.into_iter().filter(|&s| model.segment(s).joint_set == Some(set));
+    let own: Vec<SegmentId> = own.collect();
+    let first = own.iter().copied().find(|&s| motion(s, model.segment(s).parent).is_some())?;
     let base = model.segment(first).parent;
-    let motions = own.into_iter().filter_map(|s| Some((s, turning(s, base)?)));
+    let motions = own.into_iter().filter_map(|s| Some((s, motion(s, base)?)));
     let motions: Vec<(SegmentId, Motion)> = motions.collect();
-    let most = motions.iter().map(|(_, m)| m.size()).fold(0.0, f64::max);
-    if let Some(&(segment, motion)) = motions.first().filter(|(_, m)| m.size() > 0.5 * most) {
-        return Some((segment, base, motion));
-    }
-    let motions = motions.into_iter();
-    let turns = motions.clone().any(|(_, m)| matches!(m, Motion::Turn { .. }));
-    // Of equals the last is the farthest out.
+    let turns = motions.iter().any(|(_, m)| matches!(m, Motion::Turn { .. }));
+    let alike = |m: &Motion| matches!(m, Motion::Turn { .. }) == turns;
+    let most = motions.iter().filter(|(_, m)| alike(m)).map(|(_, m)| m.size()).fold(0.0, f64::max);
+    let carried = |segment: SegmentId| {
+        let all = model.segment_ids();
+        all.filter(|&id| model.path_to_root(id).any(|above| above == segment)).count()
+    };
     let (segment, motion) = motions
-        .filter(|(_, m)| matches!(m, Motion::Turn { .. }) == turns)
-        .max_by(|(_, a), (_, b)| a.size().total_cmp(&(b.size() + 1e-9)))?;
+        .into_iter()
+        .filter(|(_, m)| alike(m) && m.size() >= 0.5 * most)
+        .max_by_key(|(segment, _)| carried(*segment))?;
     Some((segment, base, motion))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::figure::tests::{model, seen};
+    use super::*;
+
+    /// A shank that bends from -10° to 130°, by a driver not beyond 60° of it.
+    const LEG: &str = r#"
+        condyle = 1
+        kind = "model"
+        angles = "deg"
+        [segment.thigh]
+        [segment.shank]
+        parent = "thigh"
+        at = [0, -0.4, 0]
+        [segment.foot]
+        parent = "shank"
+        at = [0, -0.4, 0]
+        [joint_set.knee]
+        coordinate.bent = { range = [-10, 130] }
+        coordinate.driver = { range = [0, 1], enforced = false }
+        component.held.depend = { passive = "bent", driver = "driver", upper = 1.0471975511965976 }
+        component.turn.rotate = { angle = "held", axis = [0, 0, -1] }
+        output.shank = ["turn"]
+        "#;
+
+    /// The angle between two ends as seen from a joint, in degrees.
+    fn angle(joint: [f64; 3], [a, b]: [[f64; 3]; 2]) -> f64 {
+        let [a, b] = [a, b].map(|p| Vec3::from(p) - Vec3::from(joint));
+        a.cross(b).norm().atan2(a.dot(b)).to_degrees()
+    }
+
+    #[test]
+    fn an_arc_spans_the_range_and_what_another_limit_takes_is_grey() {
+        let leg = model(LEG);
+        seen(&leg, &[0.5, 0.0], |figure| {
+            let mut scene = Scene::default();
+            let bent = leg.find_coordinate("bent").unwrap();
+            draw(figure, &mut Sweep::new(figure), bent, true, &mut scene);
+            let ends = |line: &Line| [line.points[0], line.points[line.points.len() - 1]];
+            let joint = [0.0, -0.4, 0.0];
+            let of = |colour| scene.lines.iter().find(|l| l.colour == colour && l.points.len() > 2);
+            // 49 values over 140°: the legal run ends within a step of 60°.
+            let step = 140.0 / 48.0;
+            let legal = angle(joint, ends(of(palette::LIMIT).expect("what is allowed")));
+            assert!(legal <= 70.0 + 1e-9 && legal > 70.0 - step, "{legal}");
+            let rest = angle(joint, ends(of(palette::LEADER).expect("what is not")));
+            assert!((legal + rest - 140.0).abs() < 1e-9);
+            // The sign of now is where the bone points: 0.5 rad from straight down.
+            let now = scene.lines.iter().find(|l| l.colour == palette::VALUE).unwrap();
+            let down = [0.0, -1.0, 0.0];
+            assert!((angle(joint, [now.points[1], down]).to_radians() - 0.5).abs() < 1e-12);
+            assert_eq!(scene.labels[0].text, "bent 28.6° [-10, 130]");
+            // Triangles of the fan are over the legal part alone.
+            let fan: usize = scene.surfaces.iter().map(|s| s.triangles.len()).sum();
+            assert_eq!(fan, of(palette::LIMIT).unwrap().points.len() - 1);
+        });
+    }
+
+    #[test]
+    fn a_bar_is_as_long_as_the_range_of_a_glide() {
+        let slide = model(
+            r#"
+            condyle = 1
+            kind = "model"
+            [segment.a]
+            [joint_set.a]
+            coordinate.x = { kind = "translation", range = [-0.02, 0.05] }
+            component.go.translate = { distance = "x", axis = [0, 1, 0] }
+            output.a = ["go"]
+            "#,
+        );
+        seen(&slide, &[0.01], |figure| {
+            let mut scene = Scene::default();
+            let x = slide.find_coordinate("x").unwrap();
+            draw(figure, &mut Sweep::new(figure), x, false, &mut scene);
+            let [bar] = &scene.lines[..] else { panic!("one bar") };
+            let ends = [bar.points[0][1], bar.points[bar.points.len() - 1][1]];
+            assert!((ends[0] + 0.02).abs() < 1e-12 && (ends[1] - 0.05).abs() < 1e-12, "{ends:?}");
+        });
+    }
 }

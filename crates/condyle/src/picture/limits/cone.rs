@@ -179,3 +179,81 @@ fn beside(figure: &Figure) -> Option<Pose> {
     let mut pose = Pose::new(figure.program);
     figure.program.evaluate(&stored, Mode::Open, &mut pose).ok().map(|()| pose)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::figure::tests::seen;
+    use super::*;
+    use condyle_model::Law;
+
+    /// The cone of the shipped shoulder speaks of the humerus in the thorax, that of the hip of the femur in the
+    /// pelvis: also where both are turned.
+    #[test]
+    fn a_cone_stands_in_the_frame_that_its_angles_are_in() {
+        let human = crate::shipped::read("human").expect("it is shipped").value.model;
+        let mut stored = human.defaults();
+        let step: Vec<f64> =
+            (0..human.tangent_len()).map(|i| 0.02 + 0.01 * (i % 5) as f64).collect();
+        human.retract(&human.defaults(), &step, &mut stored);
+        seen(&human, &stored, |figure| {
+            let mut found = vec![];
+            for bound in figure.program.bounds() {
+                let component = &human.components()[bound.component.index()];
+                let Law::Cone(law) = &component.law else { continue };
+                let numbers: Vec<f64> = figure.pose.bounded(bound).collect();
+                let turned = rotation(law, &numbers).expect("a rotation");
+                let (segment, frame) = frame(figure, bound, law, turned).expect("a frame");
+                let base = match &human.segment(segment).name[..] {
+                    "humerus_r" | "humerus_l" => "thorax",
+                    "femur_r" | "femur_l" => "pelvis",
+                    _ => continue,
+                };
+                let base = figure.pose.segment(human.find_segment(base).unwrap()).linear;
+                assert!((base.transpose() * frame).log().norm() < 1e-9, "{}", component.name);
+                // And the bone points there as the cone says.
+                let rest = law.cone.rest().normalized();
+                let off = figure.joint(segment).linear * rest - frame * (turned * rest);
+                assert!(off.norm() < 1e-9, "{}: {}", component.name, off.norm());
+                found.push(human.segment(segment).name.clone());
+            }
+            found.sort();
+            assert_eq!(found, ["femur_l", "femur_r", "humerus_l", "humerus_r"]);
+        });
+    }
+
+    #[test]
+    fn the_sphere_ends_at_the_boundary_and_its_shade_is_the_twist() {
+        let at = |x: f64, y: f64, z: f64, twist: [f64; 2]| condyle_model::ConePoint {
+            direction: Vec3::new(x, y, z),
+            twist: Some(twist),
+        };
+        let points = vec![
+            at(1.0, -1.0, 0.0, [-0.1, 0.1]),
+            at(0.0, -1.0, -1.0, [-1.0, 1.0]),
+            at(-1.0, -1.0, 0.0, [-1.0, 1.0]),
+            at(0.0, -1.0, 1.0, [-1.0, 1.0]),
+        ];
+        let rest = -Vec3::Y;
+        let made = |points: Vec<_>| {
+            let projection = condyle_model::Projection::TowardRest;
+            Cone::new(rest, Some([-1.0, 1.0]), points, 0, projection)
+        };
+        let mut turned = points.clone();
+        turned.reverse();
+        let cone = made(points).or_else(|_| made(turned)).expect("a cone");
+        let mut boundary: Vec<Vec3> = cone.boundary().collect();
+        boundary.push(boundary[0]);
+        let surfaces = sphere(&cone, &boundary, &|direction| direction * 2.0);
+        let corners = || surfaces.iter().flat_map(|s| &s.positions).map(|&p| Vec3::from(p));
+        assert!(corners().all(|p| (p.norm() - 2.0).abs() < 1e-12), "on the sphere");
+        // The corners of the cone are 45° from rest.
+        let lowest = corners().map(|p| p.dot(rest) / 2.0).fold(1.0, f64::min);
+        assert!((lowest - 45f64.to_radians().cos()).abs() < 1e-12);
+        // Least twist toward x: yellower there than on the other side.
+        let shade = |x: f64| {
+            let near = |s: &&Surface| s.positions.iter().any(|p| (p[0] - x).abs() < 0.06);
+            surfaces.iter().filter(near).map(|s| s.colour[0]).max().expect("a patch")
+        };
+        assert!(shade(1.4) > shade(-1.4), "{} {}", shade(1.4), shade(-1.4));
+    }
+}
