@@ -32,7 +32,9 @@ def lengths(t, man, woman):
     span = reach.at("middle_tip_r")[2] - reach.at("middle_tip_l")[2]
     t.near("span, arms level to the sides, woman", "mm", span, 1649, 46, ANSUR_WOMEN)
     breadth = p.distance("lateral_epicondyle_humerus_r", "medial_epicondyle_humerus_r")
-    t.near("epicondyles, bone and 2 x 2 of skin", "mm", breadth + 4, 71, 5, "elbow breadth (recalled)", used=True)
+    t.near(
+        "epicondyles, bone and 2 x 2 of skin", "mm", breadth + 4, 71, 5, "elbow breadth (recalled)", used=True
+    )
 
 
 def elbow(t, man, woman):
@@ -56,13 +58,37 @@ def elbow(t, man, woman):
         return humerus.T @ a
 
     hinge = axis(man.pose(elbow_flex_r=90), "ulna_r", p)
-    t.between("elbow axis, off that of another model", "°", angle(hinge, [0.049, 0.037, 0.998]), 0, 10, "Saul et al. 2014")
+    t.between(
+        "elbow axis, off that of another model",
+        "°",
+        angle(hinge, [0.049, 0.037, 0.998]),
+        0,
+        10,
+        "Saul et al. 2014",
+    )
     source = "Rajagopal et al. 2016, whose humerus is turned by 10° about its length"
-    t.between("elbow axis, off that of another model", "°", angle(hinge, [0.226, 0.022, 0.974]), 0, 10, source)
+    t.between(
+        "elbow axis, off that of another model", "°", angle(hinge, [0.226, 0.022, 0.974]), 0, 10, source
+    )
     forearm = axis(man.pose(pro_sup_r=90), "radius_r", p)
     source = "Saul et al. 2014 (whose radial head is used)"
-    t.between("forearm axis, off that of another model", "°", angle(forearm, [-0.017, 0.993, -0.120]), 0, 10, source, used=True)
-    t.between("forearm axis, off that of another model", "°", angle(forearm, [0.056, 0.998, 0.002]), 0, 10, "Rajagopal et al. 2016")
+    t.between(
+        "forearm axis, off that of another model",
+        "°",
+        angle(forearm, [-0.017, 0.993, -0.120]),
+        0,
+        10,
+        source,
+        used=True,
+    )
+    t.between(
+        "forearm axis, off that of another model",
+        "°",
+        angle(forearm, [0.056, 0.998, 0.002]),
+        0,
+        10,
+        "Rajagopal et al. 2016",
+    )
     low, high = man.typical("pro_sup_r")
     source = "PMC2730984, five people, elbow at 90, active"
     t.near("pronation and supination, typical", "°", high - low, 153, 14, source)
@@ -72,8 +98,24 @@ def elbow(t, man, woman):
     t.near("pronation from the thumb forward, typical", "°", high - 90, 76.9, 10, soucie)
     turns = man.poses([dict(pro_sup_r=a) for a in range(0, 176, 5)])
     apart = np.array([x.distance("radial_styloid_r", "ulnar_styloid_r") for x in turns])
-    t.between("styloids apart, half pronated", "mm", apart[17], 51, 66, "people (recalled); the ulna's fovea was placed so", used=True)
-    t.between("styloids, change as the forearm turns", "mm", np.ptp(apart), 0, 8, "nearly constant (recalled)", used=True)
+    t.between(
+        "styloids apart, half pronated",
+        "mm",
+        apart[17],
+        51,
+        66,
+        "people (recalled); the ulna's fovea was placed so",
+        used=True,
+    )
+    t.between(
+        "styloids, change as the forearm turns",
+        "mm",
+        np.ptp(apart),
+        0,
+        8,
+        "nearly constant (recalled)",
+        used=True,
+    )
 
 
 def wrist(t, man):
@@ -88,8 +130,10 @@ def wrist(t, man):
     back, front = man.typical("wrist_flex_r")
     radial, ulnar = man.typical("wrist_dev_r")
     for name, ours, handbook, women in (
-        ("flexion", front, 80, 93), ("extension", -back, 70, 86),
-        ("radial deviation", -radial, 20, 18), ("ulnar deviation", ulnar, 30, 41),
+        ("flexion", front, 80, 93),
+        ("extension", -back, 70, 86),
+        ("radial deviation", -radial, 20, 18),
+        ("ulnar deviation", ulnar, 30, 41),
     ):
         t.near(f"wrist, {name}, typical", "°", ours, handbook, 10, AAOS)
         t.near(f"wrist, {name}, typical", "°", ours, women, 10, MACEDO)
@@ -105,7 +149,9 @@ def hand(t, man):
     crease = local(p.point("middle_proximal_r", (9, -middle, 0)))
     t.near("palm length", "mm", local(p.at("radial_styloid_r"))[1] - crease[1], 116, 6, source)
     breadth = head["index"][2] - head["little"][2]
-    t.near("hand breadth, joints and 15 of bone and 13 of skin", "mm", breadth + 28, 88, 4, ANSUR_MEN, used=True)
+    t.near(
+        "hand breadth, joints and 15 of bone and 13 of skin", "mm", breadth + 28, 88, 4, ANSUR_MEN, used=True
+    )
     # In that model's axes (radial, distal negative, dorsal); the arch was taken from it, so breadth and length only.
     scale = 193 / 179
     dutch = dict(index=(18.2, -65.9), middle=(0.7, -65.5), ring=(-13.9, -64.2), little=(-23.5, -56.1))
@@ -115,8 +161,14 @@ def hand(t, man):
         t.between(f"head of {f} metacarpal from the middle one's, off", "mm", off, 0, 4, DUTCH)
     for f in FINGERS:
         theirs = round(scale * (7.5 - dutch[f][1]), 1)
-        t.near(f"wrist to the head of the {f} metacarpal, along", "mm", -head[f][1], theirs, 4,
-               DUTCH + ", wrist midway between its rows")
+        t.near(
+            f"wrist to the head of the {f} metacarpal, along",
+            "mm",
+            -head[f][1],
+            theirs,
+            4,
+            DUTCH + ", wrist midway between its rows",
+        )
     lengths = dict(index=(42.6, 25.1), middle=(44.7, 29.1), ring=(40.4, 24.9), little=(36.1, 21.0))
     an = dict(index=1.85, middle=1.63, ring=1.57, little=1.76)
     for f in FINGERS:
@@ -124,7 +176,9 @@ def hand(t, man):
         first, second = (np.linalg.norm(b - a) for a, b in zip(joints, joints[1:]))
         t.near(f"first bone of the {f} finger", "mm", first, round(scale * lengths[f][0], 1), 4, DUTCH)
         t.near(f"second bone of the {f} finger", "mm", second, round(scale * lengths[f][1], 1), 4, DUTCH)
-        t.near(f"first to second bone, {f} finger", "", first / second, an[f], 0.15, "An et al. 1979", digits=2)
+        t.near(
+            f"first to second bone, {f} finger", "", first / second, an[f], 0.15, "An et al. 1979", digits=2
+        )
     fist(t, man)
 
 
@@ -138,8 +192,15 @@ def fist(t, man):
         a, b = hand @ p.point(f"{f}_middle_r"), hand @ p.point(f"{f}_distal_r")
         u, r = (b - a)[1:], (tubercle - a)[1:]
         miss = (u[1] * r[0] - u[0] * r[1]) / np.linalg.norm(u)
-        t.near(f"fist, {f} finger past the tubercle of the scaphoid", "mm", miss, passes[f], 10,
-               "30 people, 240 fingers, digital rotation", used=True)
+        t.near(
+            f"fist, {f} finger past the tubercle of the scaphoid",
+            "mm",
+            miss,
+            passes[f],
+            10,
+            "30 people, 240 fingers, digital rotation",
+            used=True,
+        )
 
 
 def thumb(t, man):
@@ -147,11 +208,27 @@ def thumb(t, man):
     flexion = np.ptp(man.range("thumb_cmc_flex_r"))
     t.near("thumb, first joint, flexion in all", "°", flexion, 53, 12, cooney)
     t.near("thumb, first joint, abduction in all", "°", np.ptp(man.range("thumb_cmc_abd_r")), 42, 12, cooney)
-    low, high = (man.pose(thumb_cmc_flex_r=x).axes("thumb_metacarpal_r") for x in man.range("thumb_cmc_flex_r"))
+    low, high = (
+        man.pose(thumb_cmc_flex_r=x).axes("thumb_metacarpal_r") for x in man.range("thumb_cmc_flex_r")
+    )
     # The part of the turn that is about the metacarpal itself.
     r = low.T @ high
     w = np.sqrt(max(0, 1 + np.trace(r))) / 2
     y = (r[0, 2] - r[2, 0]) / (4 * w)
     twist = abs(np.degrees(2 * np.arctan2(y, w)))
-    t.near("thumb, turn about its metacarpal, flexed from end to end", "°", twist, 17, 6, "Cooney et al. 1981 (recalled)")
-    t.near("thumb, turn about its metacarpal, flexed from end to end", "°", twist, 9, 6, "Kawanishi et al. 2018, CT, in opposition")
+    t.near(
+        "thumb, turn about its metacarpal, flexed from end to end",
+        "°",
+        twist,
+        17,
+        6,
+        "Cooney et al. 1981 (recalled)",
+    )
+    t.near(
+        "thumb, turn about its metacarpal, flexed from end to end",
+        "°",
+        twist,
+        9,
+        6,
+        "Kawanishi et al. 2018, CT, in opposition",
+    )

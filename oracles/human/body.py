@@ -7,7 +7,6 @@ import tomllib
 
 import numpy as np
 
-
 HERE = os.path.dirname(os.path.abspath(__file__))
 MODELS = os.path.normpath(os.path.join(HERE, "../../crates/condyle/models"))
 
@@ -92,7 +91,9 @@ class Table:
     def near(self, quantity, unit, ours, theirs, allowed, source, used=False, digits=1):
         """Passes within `allowed` of `theirs`."""
         target = f"{theirs:g} ± {allowed:g}"
-        self.add(quantity, unit, ours, abs(round(ours, digits) - theirs) <= allowed, target, source, used, digits)
+        self.add(
+            quantity, unit, ours, abs(round(ours, digits) - theirs) <= allowed, target, source, used, digits
+        )
 
     def between(self, quantity, unit, ours, least, most, source, used=False, digits=1):
         target = f"{least:g} to {most:g}"

@@ -1,6 +1,6 @@
 """Compares the shipped human with sources that had no part in building it, as a Markdown page.
 
-    python oracles/human/check.py CONDYLE_BINARY > docs/human-check.md
+python oracles/human/check.py CONDYLE_BINARY > docs/human-check.md
 """
 
 import os
@@ -17,19 +17,20 @@ HUMAN = os.path.join(MODELS, "human.toml")
 
 TEXT = """# The human against independent sources
 
-`human` (a man of 1.75 m) and the same model with `stature = 1.62`, `woman = 1`, measured through the command `condyle`
-and compared with published numbers. This page is printed by `python oracles/human/check.py CONDYLE > docs/human-check.md`.
+`human` (a man of 1.75 m) and the same model with `stature = 1.62`, `woman = 1`, measured through the command
+`condyle` and compared with published numbers. This page is printed by `python oracles/human/check.py CONDYLE >
+docs/human-check.md`.
 
 The numbers wanted in the first table had no part in building the model: no number in its texts was taken from them or
-chosen toward them, even if a comment there mentions one beside a number from elsewhere. Some of these sources gave the
-model *other* numbers: ANSUR II (men and women have columns of their own), msk-STAPLE the hip, Rajagopal et al. and Saul et
-al. some axes and places of an arm, the Dutch arm model the arch of the palm and the thumb, Seth et al. the joints of the
-clavicle. The second table has numbers that were used, or toward which one was chosen; it only shows that the model does
-what its texts say.
+chosen toward them, even if a comment there mentions one beside a number from elsewhere. Some of these sources gave
+the model *other* numbers: ANSUR II (men and women have columns of their own), msk-STAPLE the hip, Rajagopal et al.
+and Saul et al. some axes and places of an arm, the Dutch arm model the arch of the palm and the thumb, Seth et al.
+the joints of the clavicle. The second table has numbers that were used, or toward which one was chosen; it only shows
+that the model does what its texts say.
 
-*Recalled*: the number is known to stand in the source but was not looked up. The allowance is the standard deviation of
-the source where it gives one, else a spread between sources or some 10 %. Fails are written as they are; the notes at the
-end say what is known about them.
+*Recalled*: the number is known to stand in the source but was not looked up. The allowance is the standard deviation
+of the source where it gives one, else a spread between sources or some 10 %. Fails are written as they are; the notes
+at the end say what is known about them.
 
 In the first table {passes} of {count} rows pass and {fails} fail.
 

@@ -23,10 +23,20 @@ def places(t, man, woman):
     t.near("acromion height, man", "mm", p.at("acromion_r")[1], 1435, 19, ANSUR_MEN, used=True)
     t.near("acromion height, woman", "mm", q.at("acromion_r")[1], 1326, 16, ANSUR_WOMEN)
     source = ", skin; ours is bone and 2 x 7 of skin"
-    t.near("biacromial breadth, man", "mm", 2 * p.at("acromion_r")[2] + 14, 415, 15, ANSUR_MEN + source, used=True)
+    t.near(
+        "biacromial breadth, man",
+        "mm",
+        2 * p.at("acromion_r")[2] + 14,
+        415,
+        15,
+        ANSUR_MEN + source,
+        used=True,
+    )
     t.near("biacromial breadth, woman", "mm", 2 * q.at("acromion_r")[2] + 14, 365, 15, ANSUR_WOMEN + source)
     clavicle = p.distance("sternoclavicular_r", "acromioclavicular_r")
-    t.near("clavicle, joint to joint", "mm", clavicle, 149.4, 10.3, "Bernat et al., 68 clavicles, whole length")
+    t.near(
+        "clavicle, joint to joint", "mm", clavicle, 149.4, 10.3, "Bernat et al., 68 clavicles, whole length"
+    )
     border = "Sobush et al. 1996 and others, means (recalled)"
     t.between("trigonum to the midline, man", "mm", p.at("trigonum_r")[2], 55, 70, border)
     t.between("trigonum to the midline, woman", "mm", q.at("trigonum_r")[2], 55, 70, border)
@@ -39,23 +49,42 @@ def places(t, man, woman):
         tips = [p.at(f"spinous_process_t{k}")[1] for k in range(1, 13)]
         return np.interp(-height, -np.array(tips), range(1, 13))
 
-    t.near("inferior angle, level of thoracic spine", "", level(p.at("inferior_angle_r")[1]), 8, 1,
-           "PMC2647093, 34 radiographs, standing")
-    t.near("superior angle, level of thoracic spine", "", level(p.at("superior_angle_r")[1]), 2, 1, "textbooks")
-    t.between("trigonum, level of thoracic spine", "", level(p.at("trigonum_r")[1]), 2.5, 4.5, "textbooks: T3 to T4")
+    t.near(
+        "inferior angle, level of thoracic spine",
+        "",
+        level(p.at("inferior_angle_r")[1]),
+        8,
+        1,
+        "PMC2647093, 34 radiographs, standing",
+    )
+    t.near(
+        "superior angle, level of thoracic spine", "", level(p.at("superior_angle_r")[1]), 2, 1, "textbooks"
+    )
+    t.between(
+        "trigonum, level of thoracic spine", "", level(p.at("trigonum_r")[1]), 2.5, 4.5, "textbooks: T3 to T4"
+    )
     schroeder = "von Schroeder et al. 2001, 15 pairs"
     height = p.distance("superior_angle_r", "inferior_angle_r")
     t.near("superior to inferior angle", "mm", height, 155, 16, schroeder, used=True)
     spine = p.distance("trigonum_r", "acromion_r")
     t.near("spine, medial edge to lateral edge of the acromion", "mm", spine, 134, 12, schroeder)
     processes = p.distance("acromion_r", "coracoid_process_r")
-    t.near("acromion to coracoid process", "mm", processes, 31.1, 8, "Siriraj Med J 2004, 97 scapulae; allowed 2 SD")
+    t.near(
+        "acromion to coracoid process",
+        "mm",
+        processes,
+        31.1,
+        8,
+        "Siriraj Med J 2004, 97 scapulae; allowed 2 SD",
+    )
 
 
 def rhythm(t, man):
     heights = [30, 120, 155]
     planes = {"frontal": 0, "scapular": 40, "sagittal": 90}
-    poses = [dict(shoulder_plane_r=plane, shoulder_elevation_r=e) for plane in planes.values() for e in heights]
+    poses = [
+        dict(shoulder_plane_r=plane, shoulder_elevation_r=e) for plane in planes.values() for e in heights
+    ]
 
     def read(pose):
         thorax = pose.axes("thorax").T
@@ -71,12 +100,16 @@ def rhythm(t, man):
 
     upward = change("upward")
     ratio = (90 - upward) / upward
-    t.near("humerus to scapula, 30 to 120 of elevation", "", ratio, 2, 0.4, "Inman et al. 1944, 2 : 1", digits=2)
+    t.near(
+        "humerus to scapula, 30 to 120 of elevation", "", ratio, 2, 0.4, "Inman et al. 1944, 2 : 1", digits=2
+    )
     source = "Braman et al. 2009, bone pins, raising"
     t.near("humerus to scapula, 30 to 120 of elevation", "", ratio, 2.3, 0.4, source, used=True, digits=2)
     up = at["scapular", 155]
     source = ", at 150 to 160 of elevation (recalled)"
-    t.between("upward rotation of the scapula at 155", "°", up["upward"], 45, 60, "50 to 55" + source + ", ± 5")
+    t.between(
+        "upward rotation of the scapula at 155", "°", up["upward"], 45, 60, "50 to 55" + source + ", ± 5"
+    )
     t.between("elevation of the clavicle at 155", "°", up["up"], 15, 30, "20 to 25" + source + ", ± 5")
     source = "Shao & Ng-Thow-Hing 2003, lower bound of a figure"
     t.near("clavicle up, 30 to 120 of abduction", "°", change("up", "frontal"), 13.2, 5, source)
@@ -89,18 +122,34 @@ def rhythm(t, man):
     }
     for name, (words, allowed, values) in ludewig.items():
         for plane, theirs in values.items():
-            t.near(f"{words}, 30 to 120, {plane} plane", "°", change(name, plane), theirs, allowed, LUDEWIG, used=True)
+            t.near(
+                f"{words}, 30 to 120, {plane} plane",
+                "°",
+                change(name, plane),
+                theirs,
+                allowed,
+                LUDEWIG,
+                used=True,
+            )
     # Degrees per 150 of elevation in that model, 0.6 of them.
     mobl = {"upward": 35.6, "tilt": 16.0, "internal": -4.4, "back": 21.8, "up": 9.2}
-    words = dict(upward="scapula upward", tilt="scapula tilts back", internal="scapula inward", back="clavicle back",
-                 up="clavicle up")
+    words = dict(
+        upward="scapula upward",
+        tilt="scapula tilts back",
+        internal="scapula inward",
+        back="clavicle back",
+        up="clavicle up",
+    )
     for name, theirs in mobl.items():
         t.near(f"{words[name]}, 30 to 120, scapular plane", "°", change(name), theirs, 8, MOBL, used=True)
     rest, shrug = read(man.rest), read(man.pose(shrug_r=25))
     moved = {name: shrug[name] - rest[name] for name in rest}
     for name, quantity, theirs, sd in (
-        ("up", "clavicle up", 25, 5), ("back", "clavicle back", 17, 5), ("upward", "scapula upward", 26, 4),
-        ("internal", "scapula inward", -9, 2), ("tilt", "scapula tilts back", -3, 2),
+        ("up", "clavicle up", 25, 5),
+        ("back", "clavicle back", 17, 5),
+        ("upward", "scapula upward", 26, 4),
+        ("internal", "scapula inward", -9, 2),
+        ("tilt", "scapula tilts back", -3, 2),
     ):
         t.near(f"{quantity}, shrug of 25", "°", moved[name], theirs, sd, PEETERS, used=True)
 

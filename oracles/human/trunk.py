@@ -29,8 +29,18 @@ def heights(t, man, woman):
     t.near("cervicale, woman", "mm", w("spinous_process_c7")[1], 1387, 15, ANSUR_WOMEN, used=True)
     t.near("tragion, man", "mm", m("tragion_r")[1], 1619, 6, ANSUR_MEN, used=True)
     source = "; rib 10 was turned down to come nearer to it"
-    t.near("tenth rib, lower edge, man", "mm", m("rib_10_end_r")[1] - 6, 1115, 22, ANSUR_MEN + source, used=True)
-    t.near("tenth rib, lower edge, woman", "mm", w("rib_10_end_r")[1] - 6, 1048, 19, ANSUR_WOMEN + source, used=True)
+    t.near(
+        "tenth rib, lower edge, man", "mm", m("rib_10_end_r")[1] - 6, 1115, 22, ANSUR_MEN + source, used=True
+    )
+    t.near(
+        "tenth rib, lower edge, woman",
+        "mm",
+        w("rib_10_end_r")[1] - 6,
+        1048,
+        19,
+        ANSUR_WOMEN + source,
+        used=True,
+    )
     seat = "; the seat is the lowest bone of the ischium"
     sitting = lambda at: at("vertex")[1] - at("ischial_tuberosity_r")[1]
     t.near("sitting height, man", "mm", sitting(m), 916, 22, ANSUR_MEN + seat)
@@ -56,12 +66,30 @@ def posture(t, man):
     t.near("lordosis, L4 to S1", "°", p.tilt("vl4") + 40, 34.2, 8.3, source)
     kyphosis = p.tilt("vt12") - p.tilt("vt4")
     t.near("kyphosis, T4 to T12", "°", kyphosis, 38, 9, "textbooks, young men (recalled)")
-    t.near("C2 to C7", "°", p.tilt("vc2") - p.tilt("vc7"), 12.7, 6.1, "Guo et al. 2018, 15 364 people", used=True)
+    t.near(
+        "C2 to C7", "°", p.tilt("vc2") - p.tilt("vc7"), 12.7, 6.1, "Guo et al. 2018, 15 364 people", used=True
+    )
     t.between("T1 slope", "°", -p.tilt("vt1"), 20, 30, "85 people, biocloudy 3890248", used=True)
     corner = p.point("vc7", (-8, 14, 0))[0]
     sacrum = p.point("sacrum")[0] - 17 * np.cos(np.radians(40))
-    t.near("C7 before the rear corner of S1", "mm", p.point("vc7", (0, 8, 0))[0] - sacrum, -21.6, 31, TANG, used=True)
-    t.near("C2 before the rear corner of C7", "mm", p.point("vc2", (0, 8, 0))[0] - corner, 18.6, 7.9, TANG, used=True)
+    t.near(
+        "C7 before the rear corner of S1",
+        "mm",
+        p.point("vc7", (0, 8, 0))[0] - sacrum,
+        -21.6,
+        31,
+        TANG,
+        used=True,
+    )
+    t.near(
+        "C2 before the rear corner of C7",
+        "mm",
+        p.point("vc2", (0, 8, 0))[0] - corner,
+        18.6,
+        7.9,
+        TANG,
+        used=True,
+    )
     source = TANG + ": the head's centre, here the tragion"
     t.near("head before the rear corner of C7", "mm", tragion[0] - corner, 22.9, 12.3, source)
 
@@ -121,11 +149,25 @@ def chest(t, man):
     source = "meshes of Bruno et al. 2015, one man; allowed 5 %"
     for k, theirs in mesh.items():
         theirs /= 352
-        t.near(f"arc of rib {k} to that of rib 6", "", ribs[k][1] / ribs[6][1], round(theirs, 3), round(0.05 * theirs, 3),
-               source, digits=3)
+        t.near(
+            f"arc of rib {k} to that of rib 6",
+            "",
+            ribs[k][1] / ribs[6][1],
+            round(theirs, 3),
+            round(0.05 * theirs, 3),
+            source,
+            digits=3,
+        )
     source = "22 patients with pectus carinatum, CT"
     for k, length in ((4, 56), (5, 71), (6, 99)):
-        t.near(f"cartilage of rib {k}", "mm", p.distance(f"rib_{k}_end_r", f"sternum_rib_{k}_r"), length, 15, source)
+        t.near(
+            f"cartilage of rib {k}",
+            "mm",
+            p.distance(f"rib_{k}_end_r", f"sternum_rib_{k}_r"),
+            length,
+            15,
+            source,
+        )
     source = "bibliomed 16478, CT of 30 men"
     upper, lower = angle - notch, end - angle
     t.near("manubrium", "mm", np.linalg.norm(upper), 53.6, 6, source)
@@ -139,13 +181,33 @@ def chest(t, man):
     def stretch(**pose):
         q = man.pose(**pose)
         return max(
-            abs(q.distance(f"rib_{k}_end_{s}", f"sternum_rib_{k}_{s}") - p.distance(f"rib_{k}_end_{s}", f"sternum_rib_{k}_{s}"))
-            for k in range(1, 8) for s in "rl"
+            abs(
+                q.distance(f"rib_{k}_end_{s}", f"sternum_rib_{k}_{s}")
+                - p.distance(f"rib_{k}_end_{s}", f"sternum_rib_{k}_{s}")
+            )
+            for k in range(1, 8)
+            for s in "rl"
         )
 
     source = "cartilage does not stretch; the ribs' parts were solved for it"
-    t.between("change of a cartilage, thorax bent by 17.5°", "mm", stretch(thoracic_bending=17.5), 0, 3, source, used=True)
-    t.between("change of a cartilage, thorax turned by 26°", "mm", stretch(thoracic_rotation=26), 0, 3, source, used=True)
+    t.between(
+        "change of a cartilage, thorax bent by 17.5°",
+        "mm",
+        stretch(thoracic_bending=17.5),
+        0,
+        3,
+        source,
+        used=True,
+    )
+    t.between(
+        "change of a cartilage, thorax turned by 26°",
+        "mm",
+        stretch(thoracic_rotation=26),
+        0,
+        3,
+        source,
+        used=True,
+    )
 
 
 def ranges(t, man):
@@ -166,7 +228,15 @@ def ranges(t, man):
     t.near("neck, bending to both sides, typical", "°", whole("bending", 1), 89.3, 12, NIEWIADOMSKI)
     t.near("neck, rotation to both sides, typical", "°", whole("rotation", 2), 146.4, 13, NIEWIADOMSKI)
     source = "dual fluoroscopy, eight women, J Biomech 2021"
-    t.near("head tilt with the neck turned by 55°", "°", abs(head(cervical_rotation=55)[1]), 3.2, 5, source, used=True)
+    t.near(
+        "head tilt with the neck turned by 55°",
+        "°",
+        abs(head(cervical_rotation=55)[1]),
+        3.2,
+        5,
+        source,
+        used=True,
+    )
 
     order = ["sacrum", "vl5", "vl4", "vl3", "vl2", "vl1", "vt12"]
 
@@ -180,7 +250,14 @@ def ranges(t, man):
     names = ["L5-S1", "L4-5", "L3-4", "L2-3", "L1-2"]
     for name, above, below in zip(names, order[1:], order):
         span = level(high, above, below, 0) - level(low, above, below, 0)
-        t.between(f"{name}, flexion and extension, typical", "°", span, 7, 14, "Hayes et al. 1989, 59 healthy men, films")
+        t.between(
+            f"{name}, flexion and extension, typical",
+            "°",
+            span,
+            7,
+            14,
+            "Hayes et al. 1989, 59 healthy men, films",
+        )
     necks = ["vt1", "vc7", "vc6", "vc5", "vc4", "vc3", "vc2"]
     lan = {"vc2": 7.7, "vc3": 8.4, "vc4": 8.9, "vc5": 7.2, "vc6": 6.3}
     bent = man.pose(cervical_bending=man.typical("cervical_bending")[1])
@@ -188,13 +265,62 @@ def ranges(t, man):
     for n, theirs in lan.items():
         k = int(n[2])
         share, wanted = ours[n] / sum(ours.values()), theirs / sum(lan.values())
-        t.near(f"C{k}-{k + 1}, share of C2 to C7 in bending", "", share, round(wanted, 3), 0.03,
-               "Lan et al. 2014, 46 healthy people", digits=3)
+        t.near(
+            f"C{k}-{k + 1}, share of C2 to C7 in bending",
+            "",
+            share,
+            round(wanted, 3),
+            0.03,
+            "Lan et al. 2014, 46 healthy people",
+            digits=3,
+        )
     end = lambda name: man.typical(name)[1]
-    t.between("trunk rotation to one side, typical", "°", end("trunk_rotation"), 36, 50, "textbooks, active: 40 to 45 (recalled), ± 10 %")
-    t.between("trunk bending to one side, typical", "°", end("trunk_bending"), 27, 38.5, "textbooks, active: 30 to 35 (recalled), ± 10 %")
-    t.between("trunk flexion, typical", "°", end("trunk_flexion"), 63, 88, "textbooks, active: 70 to 80 (recalled), ± 10 %")
-    t.between("trunk extension, typical", "°", -man.typical("trunk_flexion")[0], 18, 27.5, "textbooks, active: 20 to 25 (recalled), ± 10 %")
+    t.between(
+        "trunk rotation to one side, typical",
+        "°",
+        end("trunk_rotation"),
+        36,
+        50,
+        "textbooks, active: 40 to 45 (recalled), ± 10 %",
+    )
+    t.between(
+        "trunk bending to one side, typical",
+        "°",
+        end("trunk_bending"),
+        27,
+        38.5,
+        "textbooks, active: 30 to 35 (recalled), ± 10 %",
+    )
+    t.between(
+        "trunk flexion, typical",
+        "°",
+        end("trunk_flexion"),
+        63,
+        88,
+        "textbooks, active: 70 to 80 (recalled), ± 10 %",
+    )
+    t.between(
+        "trunk extension, typical",
+        "°",
+        -man.typical("trunk_flexion")[0],
+        18,
+        27.5,
+        "textbooks, active: 20 to 25 (recalled), ± 10 %",
+    )
     low, high = man.range("lumbar_flexion")
-    t.near("lumbar flexion and extension, range", "°", high - low, 96, 9.6, "range of Christophy et al. 2012, a model")
-    t.near("lumbar rotation to one side, typical", "°", end("lumbar_rotation"), 7, 2, "Troke et al. 2005, 405 people (recalled)")
+    t.near(
+        "lumbar flexion and extension, range",
+        "°",
+        high - low,
+        96,
+        9.6,
+        "range of Christophy et al. 2012, a model",
+    )
+    t.near(
+        "lumbar rotation to one side, typical",
+        "°",
+        end("lumbar_rotation"),
+        7,
+        2,
+        "Troke et al. 2005, 405 people (recalled)",
+    )
