@@ -6,6 +6,7 @@ from body import Table, angle, tables
 from trunk import ANSUR_MEN, ANSUR_WOMEN
 
 FINGERS = ("index", "middle", "ring", "little")
+HAND = ("thumb_", "index_", "middle_", "ring_", "little_", "finger_", "palm_")
 DUTCH = "hand of the Dutch arm model (Blana et al. 2008) x 193/179"
 AAOS = "AAOS handbook, estimates; allowed 10°"
 MACEDO = "Macedo & Magee, 90 women; allowed 10°"
@@ -18,6 +19,7 @@ def rows(man, woman):
     wrist(t, man)
     hand(t, man)
     thumb(t, man)
+    opposition(t, man)
     return t.rows
 
 
@@ -28,9 +30,13 @@ def lengths(t, man, woman):
     leva = "de Leva 1996, part of stature (recalled); allowed 12"
     t.near("elbow to wrist", "mm", p.distance("elbow_center_r", "wrist_center_r"), 270, 12, leva)
     t.near("shoulder to elbow", "mm", p.distance("shoulder_center_r", "elbow_center_r"), 283, 12, leva)
-    reach = woman.pose(shoulder_elevation_r=90, shoulder_elevation_l=90)
-    span = reach.at("middle_tip_r")[2] - reach.at("middle_tip_l")[2]
-    t.near("span, arms level to the sides, woman", "mm", span, 1649, 46, ANSUR_WOMEN)
+    for name, body, theirs, sd, source in (
+        ("man", man, 1808, 49, ANSUR_MEN),
+        ("woman", woman, 1649, 46, ANSUR_WOMEN),
+    ):
+        level = body.pose(shoulder_elevation_r=90, shoulder_elevation_l=90)
+        span = level.at("middle_tip_r")[2] - level.at("middle_tip_l")[2]
+        t.near(f"span, arms level to the sides, {name}", "mm", span, theirs, sd, source)
     breadth = p.distance("lateral_epicondyle_humerus_r", "medial_epicondyle_humerus_r")
     t.near(
         "epicondyles, bone and 2 x 2 of skin", "mm", breadth + 4, 71, 5, "elbow breadth (recalled)", used=True
@@ -49,15 +55,7 @@ def elbow(t, man, woman):
     t.near("carrying angle, woman", "°", carrying(woman), 15.1, 5.0, source)
     p = man.rest
     humerus = p.axes("humerus_r")
-
-    def axis(moved, segment, base):
-        """Of the turn between two poses, in the humerus's axes at rest."""
-        before, after = base.axes(segment), moved.axes(segment)
-        r = after @ before.T
-        a = np.array([r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]])
-        return humerus.T @ a
-
-    hinge = axis(man.pose(elbow_flex_r=90), "ulna_r", p)
+    hinge = humerus.T @ man.axis("ulna_r", elbow_flex_r=90)
     t.between(
         "elbow axis, off that of another model",
         "°",
@@ -70,7 +68,7 @@ def elbow(t, man, woman):
     t.between(
         "elbow axis, off that of another model", "°", angle(hinge, [0.226, 0.022, 0.974]), 0, 10, source
     )
-    forearm = axis(man.pose(pro_sup_r=90), "radius_r", p)
+    forearm = humerus.T @ man.axis("radius_r", pro_sup_r=90)
     source = "Saul et al. 2014 (whose radial head is used)"
     t.between(
         "forearm axis, off that of another model",
@@ -201,6 +199,26 @@ def fist(t, man):
             "30 people, 240 fingers, digital rotation",
             used=True,
         )
+
+
+def opposition(t, man):
+    """Kapandji's score: the thumb's pulp to those of the fingers, then its tip down the little finger."""
+    down = {
+        "crease of the last joint": ("little_distal_r", (5.5, 0, 0)),
+        "crease of the second joint": ("little_middle_r", (7, 0, 0)),
+        "crease of the first joint": ("little_proximal_r", (9, -18, 0)),
+        "crease of the palm": ("little_metacarpal_r", (21, -51, -15.8)),
+    }
+    source = "Kapandji 1986, young people do it; the thumb's ranges were tried with it"
+    for f in FINGERS:
+        p = man.solve("thumb_pulp_r", f'"{f}_pulp_r"', HAND)
+        gap = p.distance("thumb_pulp_r", f"{f}_pulp_r")
+        t.between(f"opposition, thumb to the pulp of the {f} finger", "mm", gap, 0, 5, source, used=True)
+    for name, (segment, point) in down.items():
+        at = [x / 1e3 for x in point]
+        p = man.solve("thumb_tip_r", f'{{ segment = "{segment}", at = {at} }}', HAND)
+        gap = np.linalg.norm(p.at("thumb_tip_r") - p.point(segment, point))
+        t.between(f"opposition, thumb to the little finger, {name}", "mm", gap, 0, 5, source, used=True)
 
 
 def thumb(t, man):

@@ -39,6 +39,25 @@ class Body:
     def pose(self, limits="off", **coordinates):
         return self.poses([coordinates], limits)[0]
 
+    def solve(self, landmark, target, free):
+        """The pose with a landmark as near to a target (TOML) as it gets, within ranges; only right coordinates
+        whose names begin with one of `free` move."""
+        goals, answer = (os.path.join(self.folder, name) for name in ("goals.toml", "answer.json"))
+        hold = [c for c in self.coordinates if not (c.startswith(free) and c.endswith("_r"))]
+        with open(goals, "w") as file:
+            file.write(f'condyle = 1\nkind = "goals"\nhold = {json.dumps(hold)}\n')
+            file.write(f'[point.goal]\npoint = "{landmark}"\nat = {target}\n')
+        run(self.condyle, "pose", self.text, goals, "-o", answer)
+        return Pose(
+            self, json.loads(run(self.condyle, "fk", self.text, "--pose", answer))["frames"][0]["segments"]
+        )
+
+    def axis(self, segment, **pose):
+        """The axis of a segment's turn from rest, in the world."""
+        r = self.pose(**pose).axes(segment) @ self.rest.axes(segment).T
+        a = np.array([r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]])
+        return a / np.linalg.norm(a)
+
     def typical(self, name):
         """What people reach on average, (least, most) in degrees."""
         return np.degrees(self.coordinates[name]["typical"])

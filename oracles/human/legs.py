@@ -87,16 +87,9 @@ def heights(t, man, woman):
     t.near("thigh to shank", "", thigh / shank, 1.006, 0.03, SCANS, used=True, digits=3)
 
 
-def turned(body, segment, **pose):
-    """The axis of a turn from rest, in the axes of the body."""
-    r = body.pose(**pose).axes(segment) @ body.rest.axes(segment).T
-    a = np.array([r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]])
-    return a / np.linalg.norm(a)
-
-
 def foot(t, man):
     at = man.rest.at
-    a = turned(man, "talus_r", ankle_angle_r=10)
+    a = man.axis("talus_r", ankle_angle_r=10)
     a *= np.sign(a[2])
     out = np.degrees(np.arctan2(-a[0], a[2]))
     t.near("ankle axis turned out against the knee's", "°", out, 32.8, 10, SCANS + ": 39, 34, 31, 27")
@@ -110,7 +103,7 @@ def foot(t, man):
         used=True,
     )
     t.near("ankle axis, lateral end up", "°", np.degrees(np.arcsin(a[1])), 0.5, 10, SCANS + ": -9, 2, 2, 7")
-    a = turned(man, "calcaneus_r", subtalar_angle_r=10)
+    a = man.axis("calcaneus_r", subtalar_angle_r=10)
     a *= np.sign(a[0])
     t.near("subtalar axis up", "°", np.degrees(np.arcsin(a[1])), 31.5, 10, SCANS + ": 41, 31, 31, 23")
     t.near(

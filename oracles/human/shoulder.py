@@ -160,6 +160,3 @@ def ranges(t, man):
     t.near("elevation, typical", "°", man.typical("shoulder_elevation_r")[1], 180, 10, source)
     t.near("internal rotation, typical", "°", man.typical("shoulder_rotation_r")[1], 70, 10, source)
     t.near("external rotation, typical", "°", -man.typical("shoulder_rotation_r")[0], 90, 10, source)
-    p = man.pose(shoulder_elevation_r=90, shoulder_elevation_l=90)
-    q = p.at("middle_tip_r")[2] - p.at("middle_tip_l")[2]
-    t.near("span, arms level to the sides, man", "mm", q, 1808, 49, ANSUR_MEN)
