@@ -95,9 +95,9 @@ fn blade(human: &Figure) -> [Vec<Vec3>; 2] {
     let shape = human.model.shapes().iter().find(|s| s.name == "scapular_blade_r");
     let Form::Plate(plate) = &shape.expect("a blade").form else { panic!("a blade is a plate") };
     let at = |name: &str| human.landmark(name).1;
-    let (ts, ai, sa, neck) =
-        (at("trigonum_r"), at("inferior_angle_r"), at("superior_angle_r"), at("glenoid_r"));
-    let low_neck = plate.outline[5];
+    let (ts, ai, sa) = (at("trigonum_r"), at("inferior_angle_r"), at("superior_angle_r"));
+    // The border goes from the trigonum by the lower angle to the neck below and at the glenoid.
+    let [.., low_neck, neck, _, _] = plate.outline[..] else { panic!("a border") };
     let fill = |[a, b, c]: [Vec3; 3], steps: usize| -> Vec<Vec3> {
         let mut points = vec![];
         for i in 0..=steps {
