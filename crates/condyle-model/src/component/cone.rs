@@ -4,8 +4,8 @@
 //! The angles give R = R(a₁, θ₁)·R(a₂, θ₂)·R(a₃, θ₃), and the [`Cone`] limits its swing and twist.
 //! In posed mode illegal angles are replaced by those of the legal rotation that the cone's
 //! projection gives, so that a [`Pivot`](super::Pivot) after the cone has its centre at the legal
-//! angle. Of the two triples of angles of a rotation the one nearest to the requested angles is
-//! used. In open mode the angles pass unchanged, and up to three limit rows are computed: the
+//! angle. Of the two triples of angles of a rotation the one on the side of gimbal lock where the
+//! requested angles are is used. In open mode the angles pass unchanged, and up to three limit rows are computed: the
 //! distance of the direction from the boundary, and those of the twist from its lower and its upper
 //! bound.
 //!
@@ -96,8 +96,8 @@ impl JointCone {
         if numbers.len() > 2 { swing * turn(2) } else { swing }
     }
 
-    /// The angles that rotate the third axis to `w` (and give `rotation`), nearest to the requested
-    /// ones.
+    /// The angles that rotate the third axis to `w` (and give `rotation`): of the two sets that do, the one on the
+    /// side of gimbal lock where the requested ones are.
     fn angles(&self, w: Vec3, rotation: Option<Mat3>, asked: &[f64]) -> [f64; 4] {
         let Some([a, b, c]) = self.axes() else { return [0.0, 0.0, 0.0, 1.0] };
         if self.obliqueness() > 1e-6 {
@@ -126,6 +126,12 @@ impl JointCone {
             let far: f64 = found.iter().zip(asked).map(|(x, y)| (x - y) * (x - y)).sum();
             (far, found)
         };
+        // Angles stay on the side of gimbal lock on which they were asked: beyond it, two angles that give the same
+        // direction turn the bone about it by half a turn.
+        let side_asked = (asked[1] + lead).sin();
+        if side_asked.abs() > 1e-6 {
+            return solve(side_asked.signum()).1;
+        }
         let ((far, found), (other_far, other)) = (solve(1.0), solve(-1.0));
         if other_far < far { other } else { found }
     }

@@ -61,7 +61,7 @@ fn the_left_is_the_right_in_a_mirror() {
 fn ranges_end_where_the_text_says() {
     let table = [
         ("hip_flexion_r", "femur_r", -40.0, 150.0),
-        ("hip_adduction_r", "femur_r", -90.0, 60.0),
+        ("hip_adduction_r", "femur_r", -85.0, 55.0),
         ("hip_rotation_r", "femur_r", -70.0, 60.0),
         // Nakagawa et al. 2000: people who kneel reach 155.
         ("knee_angle_r", "tibia_r", -10.0, 155.0),
