@@ -5,9 +5,23 @@ use crate::light::{Linear, Screen, linear, lit};
 use crate::palette;
 use crate::palette::Colour;
 use condyle_math::Vec3;
+use std::ops::Range;
 
 /// Samples along each side of a pixel.
 pub(crate) const SAMPLES: usize = 3;
+
+/// Distances in samples at which something nearer darkens, each with how much of the light it takes in one of
+/// eight directions.
+const CREASES: [(isize, f32); 3] = [(3, 0.035), (7, 0.02), (13, 0.012)];
+
+/// Pixels beyond a band that darken it.
+pub(crate) const BEYOND: usize = 5;
+
+/// How much nearer than its distance across the view something has to be.
+const STEEP: f32 = 2.0;
+
+const AROUND: [(isize, isize); 8] =
+    [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
 
 /// A corner as it is seen: samples to the right and down from the upper left corner of the picture, metres
 /// towards the viewer.
@@ -128,6 +142,36 @@ impl Band {
         }
     }
 
+    /// Darkens what is just behind the outline of something nearer, which tells bones that cross apart.
+    /// `step` is the size of a sample in metres.
+    pub(crate) fn crease(&mut self, step: f64) {
+        for y in 0..self.rows {
+            for x in 0..self.width {
+                let at = y * self.width + x;
+                let near = self.near[at];
+                if near == f32::NEG_INFINITY {
+                    continue;
+                }
+                let mut dark = 0.0;
+                for (distance, share) in CREASES {
+                    let least = STEEP * distance as f32 * step as f32;
+                    for (dx, dy) in AROUND {
+                        let (i, j) = (x as isize + dx * distance, y as isize + dy * distance);
+                        let inside = (0..self.width as isize).contains(&i)
+                            && (0..self.rows as isize).contains(&j);
+                        if inside {
+                            let other = self.near[j as usize * self.width + i as usize];
+                            dark +=
+                                share * ((other - near - least) / (3.0 * least)).clamp(0.0, 1.0);
+                        }
+                    }
+                }
+                let left = 1.0 - dark;
+                self.light[at] = self.light[at].map(|c| c * left);
+            }
+        }
+    }
+
     /// Draws the ground behind and over what is there. `metres` gives the place of a sample: at the upper
     /// left corner, and for each sample.
     pub(crate) fn ground(&mut self, ground: &ground::Seen, ([u0, v0], step): ([f64; 2], f64)) {
@@ -152,11 +196,11 @@ impl Band {
         }
     }
 
-    /// The pixels, each the mean of its samples.
-    pub(crate) fn pixels(&self, screen: &Screen) -> Vec<Colour> {
-        let (width, rows) = (self.width / SAMPLES, self.rows / SAMPLES);
-        let mut pixels = Vec::with_capacity(width * rows);
-        for y in 0..rows {
+    /// The pixels of some rows, each the mean of its samples.
+    pub(crate) fn pixels(&self, screen: &Screen, rows: Range<usize>) -> Vec<Colour> {
+        let width = self.width / SAMPLES;
+        let mut pixels = Vec::with_capacity(width * rows.len());
+        for y in rows {
             for x in 0..width {
                 let mut sum = [0.0f32; 3];
                 for j in 0..SAMPLES {

@@ -5,6 +5,8 @@ pub type Colour = [u8; 3];
 
 /// What is behind everything.
 pub const BACKGROUND: Colour = [0xf4, 0xf5, 0xf7];
+/// What is between pictures.
+pub const PAGE: Colour = [0xff, 0xff, 0xff];
 /// The ground.
 pub const GROUND: Colour = [0xdc, 0xdf, 0xe4];
 /// Lines of the ground's grid.
@@ -47,8 +49,9 @@ pub const TEXT: Colour = [0x26, 0x2b, 0x33];
 pub const LEADER: Colour = [0x8c, 0x93, 0x9e];
 
 /// Every colour with its name, for a page that shows the same things.
-pub const ALL: [(&str, Colour); 21] = [
+pub const ALL: [(&str, Colour); 22] = [
     ("background", BACKGROUND),
+    ("page", PAGE),
     ("ground", GROUND),
     ("grid", GRID),
     ("bone", BONE),

@@ -1,6 +1,6 @@
 //! From a scene to a picture, band by band.
 
-use crate::band::{Band, Corner, Paint, SAMPLES};
+use crate::band::{BEYOND, Band, Corner, Paint, SAMPLES};
 use crate::camera::Camera;
 use crate::canvas::Canvas;
 use crate::ground;
@@ -184,13 +184,17 @@ impl<'a> Picture<'a> {
     /// The pixels of a band, rows from the top.
     pub fn band(&self, band: usize) -> Vec<Colour> {
         let first = band * BAND;
-        let rows = BAND.min(self.height.saturating_sub(first));
-        let mut samples = Band::new(self.width, first, rows);
-        let (top, bottom) = ((first * SAMPLES) as f64, ((first + rows) * SAMPLES) as f64);
+        let wanted = BAND.min(self.height.saturating_sub(first));
+        // Pixels are darkened by what is beside them, also beyond the band.
+        let from = first.saturating_sub(BEYOND);
+        let rows = (first + wanted + BEYOND).min(self.height).saturating_sub(from);
+        let mut samples = Band::new(self.width, from, rows);
+        let (top, bottom) = ((from * SAMPLES) as f64, ((from + rows) * SAMPLES) as f64);
         let here = |triangle: &&Triangle| triangle.rows[1] >= top && triangle.rows[0] <= bottom;
         for triangle in self.opaque.iter().filter(here) {
             samples.triangle(triangle.corners, &triangle.paint);
         }
+        samples.crease(self.step());
         if let Some(ground) = &self.ground {
             samples.ground(ground, (self.corner(), self.step()));
         }
@@ -200,7 +204,7 @@ impl<'a> Picture<'a> {
         for triangle in self.glass.iter().filter(here) {
             samples.triangle(triangle.corners, &triangle.paint);
         }
-        samples.pixels(&self.screen)
+        samples.pixels(&self.screen, first - from..first - from + wanted)
     }
 
     /// The picture of all bands in their order, with its labels.

@@ -101,22 +101,28 @@ pub fn ellipsoid(frame: &Affine, radii: [f64; 3], colour: Colour) -> Surface {
     surface
 }
 
-/// Adds a long octahedron from one point to another, widest at 15 % of its length; its width is a tenth of
-/// it, 4 to 30 mm. Nothing for less than a tenth of a millimetre.
-pub fn add_bone(surface: &mut Surface, from: Vec3, to: Vec3) {
-    let length = (to - from).norm();
-    if !length.is_finite() || length < 1e-4 {
+/// Adds a cone from the middle of its base to its tip.
+pub fn add_cone(surface: &mut Surface, base: Vec3, tip: Vec3, radius: f64) {
+    const SIDES: u32 = 20;
+    let length = (tip - base).norm();
+    if !length.is_finite() || length < 1e-9 {
         return;
     }
-    let axis = (to - from) * (1.0 / length);
-    let [side, front] = across(axis);
-    let half = (0.1 * length).clamp(0.004, 0.03).min(0.4 * length) / 2.0;
-    let waist = from + axis * (0.15 * length);
-    let ring = [side * half, front * half, side * -half, front * -half].map(|off| waist + off);
-    for i in 0..4 {
-        let (a, b) = (ring[i], ring[(i + 1) % 4]);
-        surface.flat([a, b, to]);
-        surface.flat([b, a, from]);
+    let axis = (tip - base) * length.recip();
+    let [u, v] = across(axis);
+    let ring: Vec<[Vec3; 2]> = (0..=SIDES)
+        .map(|i| {
+            let (s, c) = (TAU * f64::from(i) / f64::from(SIDES)).sin_cos();
+            let out = u * c + v * s;
+            // Across the slant of the side.
+            [base + out * radius, out * length + axis * radius]
+        })
+        .collect();
+    for pair in ring.windows(2) {
+        let [[a, na], [b, nb]] = [pair[0], pair[1]];
+        let side = [surface.corner(a, na), surface.corner(b, nb), surface.corner(tip, na + nb)];
+        surface.triangles.push(side);
+        surface.flat([b, a, base]);
     }
 }
 

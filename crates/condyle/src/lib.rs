@@ -256,6 +256,7 @@
 //! | [`tracking`] | recordings to motions; streams; orientations of inertial sensors |
 //! | [`scaling`] | a model as large as a person |
 //! | [`legal`] | poses within all limits |
+//! | [`picture`], [`render`] | still pictures of models, and of any surfaces and lines |
 //! | [`posing`] | the pose nearest to rest that meets goals |
 //! | [`check`] | findings about a model, or about a motion of it |
 //! | [`formats`], [`open`], [`encode`] | bytes to values and back, by path or not |

@@ -30,7 +30,8 @@ fn evaluated(model: &Model, posed: &Posed) -> Pose {
         assert!(range.distance(value) >= 0.0, "{} at {value}", model.coordinate_key(id));
     }
     for row in 0..program.limit_row_len() {
-        assert!(pose.limit_row(row) > -1e-9, "limit {row}");
+        // What counts as met, in metres or radians, and as much again.
+        assert!(pose.limit_row(row) > -3e-6, "limit {row}: {}", pose.limit_row(row));
     }
     pose
 }
@@ -54,13 +55,13 @@ fn the_example_puts_a_hand_on_the_other_shoulder() {
     let now = evaluated(&human, &posed);
     let scapula = human.find_segment("scapula_l").unwrap();
     let place = now.segment(scapula) * Vec3::new(0.0, 0.03, 0.0);
-    assert!((marker(&human, &now, "RFIN") - place).norm() < 1e-8);
+    assert!((marker(&human, &now, "RFIN") - place).norm() < 2e-6);
     let program = Program::compile(&human);
     let mut rest = Pose::new(&program);
     program.evaluate(&posed.goals.rest.pose, Mode::Open, &mut rest).unwrap();
     for name in ["r_calc", "r_toe", "L_calc", "L_toe"] {
         let off = marker(&human, &now, name) - marker(&human, &rest, name);
-        assert!(off.norm() < 1e-8, "{name}: {off:?}");
+        assert!(off.norm() < 2e-6, "{name}: {off:?}");
     }
     // An arm that crosses the chest is bent and raised a little; nothing else folds up.
     let elbow = degrees(&human, &posed, "elbow_flex_r");
@@ -71,7 +72,8 @@ fn the_example_puts_a_hand_on_the_other_shoulder() {
     // The left hand has nothing to do.
     let wrist = human.find_coordinate("wrist_flex_l").unwrap();
     assert_eq!(posed.answer.by[wrist.index()], By::Rest);
-    assert_eq!(degrees(&human, &posed, "wrist_flex_l"), 0.0);
+    // At rest it is extended by 12 degrees.
+    assert!((degrees(&human, &posed, "wrist_flex_l") + 12.0).abs() < 1e-9);
 }
 
 #[test]

@@ -26,14 +26,14 @@ fn a_model_for_programs() {
     assert_eq!(names(&info["coordinates"], "key"), keys);
     let hip = json!({
         "key": "hip_flexion", "name": "hip_flexion", "joint_set": "hip", "kind": "rotation",
-        "default": 0.0, "range": [-1.5, 2.0], "clamped": true, "circle": false, "locked": false,
+        "default": 0.0, "range": [-1.5, 2.0], "typical": null, "clamped": true, "circle": false, "locked": false,
         "follows": [],
     });
     assert_eq!(info["coordinates"][0], hip);
     assert_eq!(info["coordinates"][1]["clamped"], false);
     let slide = json!({
         "key": "knee_slide", "name": "knee_slide", "joint_set": "knee", "kind": "translation",
-        "default": 0.0, "range": [null, null], "clamped": false, "circle": false,
+        "default": 0.0, "range": [null, null], "typical": null, "clamped": false, "circle": false,
         "locked": false, "follows": ["knee_angle"],
     });
     assert_eq!(info["coordinates"][2], slide);

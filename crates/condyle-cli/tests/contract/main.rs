@@ -18,6 +18,7 @@ mod long;
 #[cfg(unix)]
 mod output;
 mod pose;
+mod render;
 mod scale;
 mod shipped;
 #[cfg(unix)]

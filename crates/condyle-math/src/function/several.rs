@@ -1,6 +1,6 @@
 //! Functions of several scalars.
 
-use crate::{Dual, Scalar};
+use crate::Scalar;
 
 /// A scalar function of several scalars, such as the angle of a vertebra as a function of three
 /// trunk angles.
@@ -69,11 +69,12 @@ impl FunctionOfSeveral {
     pub fn slope_at(&self, x: impl Iterator<Item = f64>, i: usize) -> f64 {
         match self {
             Self::Linear { slopes, .. } => slopes.get(i).copied().unwrap_or(0.0),
-            Self::Polynomial(_) => {
-                let seeded = x
-                    .enumerate()
-                    .map(|(k, value)| Dual { value, partials: [f64::from(u8::from(k == i))] });
-                self.apply_to(seeded).partials[0]
+            Self::Polynomial(p) => {
+                let mut all = [0.0; MOST_VARIABLES];
+                for (value, x) in all.iter_mut().zip(x) {
+                    *value = x;
+                }
+                p.slope(&all, i)
             }
         }
     }
@@ -90,6 +91,11 @@ pub struct MultivariatePolynomial {
     coefficients: Vec<f64>,
     /// `dimension` exponents for each term, term by term.
     exponents: Vec<u8>,
+    /// The terms that are not 0: the coefficient, and where the factors of its monomial end in `factors`. Most
+    /// polynomials over many variables have few.
+    terms: Vec<(f64, u32)>,
+    /// The variables of those monomials, each as often as its exponent says.
+    factors: Vec<u8>,
 }
 
 impl MultivariatePolynomial {
@@ -143,7 +149,18 @@ impl MultivariatePolynomial {
                 powers[place] = 0;
             }
         }
-        Ok(Self { dimension, coefficients: coefficients.to_vec(), exponents: terms })
+        let mut sparse = vec![];
+        let mut factors = vec![];
+        for (&c, powers) in coefficients.iter().zip(terms.chunks_exact(dimension)) {
+            if c != 0.0 {
+                for (variable, &power) in powers.iter().enumerate() {
+                    factors.extend(std::iter::repeat_n(variable as u8, usize::from(power)));
+                }
+                sparse.push((c, factors.len() as u32));
+            }
+        }
+        let coefficients = coefficients.to_vec();
+        Ok(Self { dimension, coefficients, exponents: terms, terms: sparse, factors })
     }
 
     /// The number of variables.
@@ -166,19 +183,30 @@ impl MultivariatePolynomial {
     #[inline]
     pub fn apply<S: Scalar>(&self, x: &[S]) -> S {
         let mut sum = S::zero();
-        for (&c, powers) in
-            self.coefficients.iter().zip(self.exponents.chunks_exact(self.dimension))
-        {
-            if c == 0.0 {
-                continue;
-            }
+        let mut from = 0;
+        for &(c, to) in &self.terms {
             let mut term = S::from_f64(c);
-            for (&x, &power) in x.iter().zip(powers) {
-                for _ in 0..power {
-                    term *= x;
-                }
+            for &variable in &self.factors[from..to as usize] {
+                term *= x.get(usize::from(variable)).copied().unwrap_or_else(S::zero);
             }
+            from = to as usize;
             sum += term;
+        }
+        sum
+    }
+
+    /// The partial derivative at `x` by variable `i`: of each factor of a term that is that variable, the product of
+    /// the others.
+    fn slope(&self, x: &[f64], i: usize) -> f64 {
+        let mut sum = 0.0;
+        let mut from = 0;
+        for &(c, to) in &self.terms {
+            let factors = &self.factors[from..to as usize];
+            from = to as usize;
+            for (left_out, _) in factors.iter().enumerate().filter(|(_, v)| usize::from(**v) == i) {
+                let others = factors.iter().enumerate().filter(|(k, _)| *k != left_out);
+                sum += others.fold(c, |product, (_, v)| product * x[usize::from(*v)]);
+            }
         }
         sum
     }

@@ -3,6 +3,7 @@
 use super::behind::Behind;
 use super::derivative_plan::DerivativePlan;
 use super::instruction::{Code, Frame, Number};
+use super::pose::Pose;
 use crate::model::{ComponentId, CoordinateId, Model, SegmentId};
 use std::fmt;
 use std::ops::Range;
@@ -108,6 +109,19 @@ impl Program {
     /// in this list.
     pub fn contacts(&self) -> impl ExactSizeIterator<Item = ComponentId> {
         self.code.contacts.iter().map(|call| call.component)
+    }
+
+    /// The values of the drivers of a contact in an evaluated pose, by its position in
+    /// [`Program::contacts`]; of one that is not there, none. [`Gliding::points`] takes them.
+    ///
+    /// [`Gliding::points`]: crate::component::Gliding::points
+    pub fn contact_drivers<'p>(
+        &'p self,
+        pose: &'p Pose,
+        number: usize,
+    ) -> impl Iterator<Item = f64> + 'p {
+        let drivers = self.code.contacts.get(number).map_or(&[][..], |call| &call.drivers);
+        drivers.iter().filter_map(|driver| pose.scalars.get(driver.index()).copied())
     }
 
     /// Whether a segment is below a scale or a shear, so that its transform is not rigid.

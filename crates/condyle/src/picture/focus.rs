@@ -14,13 +14,17 @@ pub struct Focus {
     pub highlight: bool,
 }
 
-/// The segments that are looked at.
+/// What is looked at.
 #[derive(Clone, Debug)]
-pub(super) struct Chosen(Vec<bool>);
+pub(super) struct Chosen {
+    segments: Vec<bool>,
+    /// The first segments of the joint sets that are looked at.
+    pub(super) joints: Vec<SegmentId>,
+}
 
 impl Chosen {
     pub(super) fn has(&self, segment: SegmentId) -> bool {
-        self.0.get(segment.index()).copied().unwrap_or(false)
+        self.segments.get(segment.index()).copied().unwrap_or(false)
     }
 }
 
@@ -33,23 +37,25 @@ impl Focus {
         if self.names.is_empty() {
             return Ok(None);
         }
-        let mut chosen = vec![false; model.segments().len()];
+        let (mut segments, mut joints) = (vec![false; model.segments().len()], vec![]);
         for name in &self.names {
             let set = model.joint_set_ids().find(|id| model.joint_sets()[id.index()].name == *name);
             if let Ok(segment) = model.find_segment(name) {
-                chosen[segment.index()] = true;
+                segments[segment.index()] = true;
             } else if let Some(set) = set {
-                model.outputs_of(set).for_each(|(segment, _)| chosen[segment.index()] = true);
+                model.outputs_of(set).for_each(|(segment, _)| segments[segment.index()] = true);
+                let moved = |s: &SegmentId| model.segment(*s).joint_set == Some(set);
+                joints.extend(model.parents_first().into_iter().find(moved));
             } else {
-                let segments = model.segments().iter().map(|s| s.name.as_str());
+                let known = model.segments().iter().map(|s| s.name.as_str());
                 let sets = model.joint_sets().iter().map(|s| s.name.as_str());
-                let help = did_you_mean(name, segments.chain(sets), || {
+                let help = did_you_mean(name, known.chain(sets), || {
                     "`condyle info` lists segments and joint sets".to_owned()
                 });
                 let message = format!("no segment or joint set is called `{name}`");
                 return Err(Error::new("picture/unknown", message).with_help(help));
             }
         }
-        Ok(Some(Chosen(chosen)))
+        Ok(Some(Chosen { segments, joints }))
     }
 }

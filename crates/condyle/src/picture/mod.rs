@@ -13,12 +13,17 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod axes;
 mod bones;
+mod contacts;
 mod figure;
 mod focus;
+mod limits;
 mod marks;
+mod screw;
 mod sheet;
 mod show;
+mod sweep;
 mod view;
 
 pub use focus::Focus;

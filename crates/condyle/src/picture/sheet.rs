@@ -2,7 +2,7 @@
 
 use super::figure::Figure;
 use super::focus::{Chosen, Focus};
-use super::{Show, View, bones, marks, view};
+use super::{Show, View, axes, bones, contacts, limits, marks, view};
 use condyle_diagnostics::Error;
 use condyle_math::Vec3;
 use condyle_model::{Jacobian, Model, Pose, Program};
@@ -70,7 +70,7 @@ pub fn draw(model: &Model, sheet: &Sheet) -> Result<Canvas, Error> {
     let program = Program::compile(model);
     let surfaces = crate::Figure::new(model);
     let (mut pose, mut jacobian) = (Pose::new(&program), Jacobian::new(&program));
-    let mut page = Canvas::new(sheet.size[0], sheet.size[1], palette::BACKGROUND);
+    let mut page = Canvas::new(sheet.size[0], sheet.size[1], palette::PAGE);
     let mut evaluate = |stored: &[f64], draw: &mut dyn FnMut(&Figure)| {
         let evaluated = program.evaluate_with_jacobian(stored, &mut pose, &mut jacobian);
         evaluated.map_err(|error| Error::new("picture/poses", error.to_string()))?;
@@ -139,10 +139,23 @@ fn scene(figure: &Figure, show: &[Show]) -> Scene {
     if shows(Show::Frames) {
         marks::frames(figure, &mut scene);
     }
+    let named = shows(Show::Names);
+    if shows(Show::Axes) {
+        axes::axes(figure, named, &mut scene);
+    }
+    if shows(Show::Centres) {
+        axes::centres(figure, &mut scene);
+    }
+    if shows(Show::Limits) {
+        limits::limits(figure, named, &mut scene);
+    }
+    if shows(Show::Contacts) {
+        contacts::contacts(figure, named, &mut scene);
+    }
     if shows(Show::Markers) {
         marks::markers(figure, &mut scene);
     }
-    if shows(Show::Names) {
+    if named {
         marks::names(figure, shows(Show::Markers), &mut scene);
     }
     scene
@@ -154,6 +167,8 @@ struct Placed {
     whole: Bounds,
     /// The box of what is looked at.
     looked: Bounds,
+    /// The middle of the joints of joint sets that are looked at, where there are any.
+    joints: Option<Vec3>,
     /// The origin of its first segment.
     root: Vec3,
 }
@@ -170,7 +185,10 @@ impl Placed {
         let looked = of(chosen).unwrap_or(whole);
         let first = figure.model.parents_first().first().map(|&id| figure.pose.segment(id));
         let root = first.map_or(Vec3::ZERO, |frame| frame.translation);
-        Self { whole, looked, root: if root.is_finite() { root } else { Vec3::ZERO } }
+        let joints = chosen.map_or(&[][..], |chosen| &chosen.joints);
+        let joints = joints.iter().map(|&id| figure.joint(id).translation.to_array());
+        let joints = Bounds::of(joints).map(|bounds| Vec3::from(bounds.centre()));
+        Self { whole, looked, joints, root: if root.is_finite() { root } else { Vec3::ZERO } }
     }
 
     /// The ground under it.
@@ -210,7 +228,11 @@ fn cameras(model: &Model, sheet: &Sheet, placed: &[Placed], layout: &Layout) -> 
         for placed in placed {
             let centre = match sheet.focus.names.is_empty() {
                 true => Vec3::from(whole.centre()) + away(placed),
-                false => placed.looked.centre().into(),
+                // A joint stays in the middle while its bones move, if they need not all be seen.
+                false => placed
+                    .joints
+                    .filter(|_| sheet.focus.zoom.is_some())
+                    .unwrap_or_else(|| placed.looked.centre().into()),
             };
             cameras.push(Camera { centre: centre.to_array(), height, ..camera });
         }
@@ -251,10 +273,15 @@ struct Layout {
     high: usize,
     /// The height of a title.
     title: usize,
+    /// Free pixels between cells.
+    gap: usize,
     /// What is left over, to the left and above.
     free: [usize; 2],
     text: TextSize,
 }
+
+/// Free pixels between cells.
+const GAP: usize = 4;
 
 /// The least width and height of a cell in pixels.
 const LEAST_CELL: usize = 16;
@@ -297,14 +324,17 @@ impl Layout {
             None => (views, 0),
         };
         let lines = if rows == 0 { 1 } else { rows * views };
-        let (wide, high) = (width / columns, (height / lines).saturating_sub(title));
+        let gap = if poses * views > 1 { GAP } else { 0 };
+        let wide = ((width + gap) / columns).saturating_sub(gap);
+        let high = ((height + gap) / lines).saturating_sub(gap + title);
         if wide < LEAST_CELL || high < LEAST_CELL {
             let message =
                 format!("{poses} poses and {views} views do not fit in {width}x{height} pixels");
             return fail(message, "each needs at least 16 pixels and its title");
         }
-        let free = [(width - wide * columns) / 2, (height - (high + title) * lines) / 2];
-        Ok(Self { columns, rows, wide, high, title, free, text })
+        let used = [(wide + gap) * columns - gap, (high + title + gap) * lines - gap];
+        let free = [(width - used[0]) / 2, (height - used[1]) / 2];
+        Ok(Self { gap, columns, rows, wide, high, title, free, text })
     }
 
     /// The upper left corner of a cell.
@@ -314,7 +344,7 @@ impl Layout {
             rows => (pose % self.columns, view * rows + pose / self.columns),
         };
         let [x, y] = self.free;
-        (x + column * self.wide, y + line * (self.high + self.title))
+        (x + column * (self.wide + self.gap), y + line * (self.high + self.title + self.gap))
     }
 
     /// Writes a title under a cell, as much of it as fits.
@@ -324,6 +354,6 @@ impl Layout {
         let title: String = title.chars().take(self.wide / character).collect();
         let left = x + (self.wide - title.chars().count() * character) / 2;
         let at = (left as i32, (y + self.high + 1) as i32);
-        page.write(&title, at, self.text, palette::TEXT, palette::BACKGROUND);
+        page.write(&title, at, self.text, palette::TEXT, palette::PAGE);
     }
 }

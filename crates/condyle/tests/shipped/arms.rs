@@ -81,7 +81,7 @@ fn ranges_end_where_the_text_says() {
         table.push(row("pip_flex", "middle", -15.0, 120.0));
         table.push(row("dip_flex", "distal", -70.0, 50.0));
         if finger != "middle" {
-            table.push(row("spread", "proximal", -20.0, 25.0));
+            table.push(row("spread", "proximal", -30.0, 30.0));
         }
     }
     let table: Vec<(&str, &str, f64, f64)> =

@@ -61,7 +61,7 @@ fn the_left_is_the_right_in_a_mirror() {
 fn ranges_end_where_the_text_says() {
     let table = [
         ("hip_flexion_r", "femur_r", -40.0, 150.0),
-        ("hip_adduction_r", "femur_r", -85.0, 45.0),
+        ("hip_adduction_r", "femur_r", -90.0, 60.0),
         ("hip_rotation_r", "femur_r", -70.0, 60.0),
         // Nakagawa et al. 2000: people who kneel reach 155.
         ("knee_angle_r", "tibia_r", -10.0, 155.0),
@@ -69,7 +69,7 @@ fn ranges_end_where_the_text_says() {
         // Zarins et al. 1983.
         ("knee_rotation_r", "tibia_r", -45.0, 25.0),
         ("ankle_angle_r", "talus_r", -65.0, 50.0),
-        ("subtalar_angle_r", "calcaneus_r", -25.0, 40.0),
+        ("subtalar_angle_r", "calcaneus_r", -32.0, 40.0),
         ("midtarsal_angle_r", "midfoot_r", -25.0, 25.0),
         ("mtp_angle_r", "toes_r", -90.0, 45.0),
         ("hallux_angle_r", "hallux_r", -25.0, 25.0),

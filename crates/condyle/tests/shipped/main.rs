@@ -1,6 +1,7 @@
 //! The shipped models against the numbers that they were made of.
 
 mod arms;
+mod chest;
 mod figure;
 mod hands;
 mod human;

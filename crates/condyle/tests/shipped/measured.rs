@@ -34,8 +34,10 @@ apart.half_space = { inputs = ["border"], normal = [-1], bound = -0.05 }
 const ROWS: usize = 4 + 3 + 3;
 
 fn read(text: &str) -> Model {
-    let alone = |_: &str| Err("it stands alone".to_owned());
-    document::read(text, &mut { alone }).unwrap_or_else(|e| panic!("{e}")).value.model
+    let models = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+    let part =
+        |file: &str| std::fs::read_to_string(models.join(file)).map_err(|error| error.to_string());
+    document::read(text, &mut { part }).unwrap_or_else(|e| panic!("{e}")).value.model
 }
 
 fn plain() -> &'static str {

@@ -18,46 +18,27 @@ const BONES: [&str; 3] = ["clavicle_r", "scapula_r", "humerus_r"];
 const TOUCH: f64 = 1e-11;
 
 /// Clavicle retraction, elevation, axial rotation; scapula upward and internal rotation, tilt: at
-/// rest (Ludewig et al. 2009), in degrees.
-const REST: [f64; 6] = [19.2, 5.9, 0.0, 5.4, 41.1, -13.5];
+/// rest, in degrees. That of Shao & Ng-Thow-Hing rests as Ludewig et al. 2009 have it.
+fn rest(name: &str) -> [f64; 6] {
+    match name {
+        SHAO => [19.2, 5.9, 0.0, 5.4, 41.1, -13.5],
+        _ => [23.3, 1.2, 0.0, 9.6, 45.7, -12.1],
+    }
+}
 
-/// The same at 30, 60, 90 and 120 degrees of elevation in the planes 0, 40 and 90 (Ludewig et al.
-/// 2009).
-const BONE_PINS: [(f64, [[f64; 4]; 6]); 3] = [
-    (
-        0.0,
-        [
-            [31.3, 37.3, 40.6, 44.0],
-            [14.3, 16.8, 18.1, 19.5],
-            [3.1, 8.6, 15.8, 24.8],
-            [15.6, 26.5, 36.5, 46.4],
-            [31.2, 30.5, 30.8, 30.6],
-            [-10.2, -6.1, -2.1, 3.8],
-        ],
-    ),
-    (
-        40.0,
-        [
-            [24.6, 29.0, 32.0, 36.3],
-            [11.5, 14.4, 15.5, 16.9],
-            [1.9, 8.2, 15.2, 24.3],
-            [15.5, 26.0, 34.4, 43.5],
-            [38.5, 38.8, 39.0, 37.2],
-            [-11.2, -6.8, -2.8, 2.7],
-        ],
-    ),
-    (
-        90.0,
-        [
-            [20.4, 22.7, 24.8, 31.7],
-            [10.1, 12.0, 13.5, 14.5],
-            [0.0, 6.6, 14.1, 25.0],
-            [15.1, 24.4, 32.9, 43.3],
-            [44.3, 46.7, 47.8, 43.5],
-            [-10.4, -5.7, -1.4, 5.4],
-        ],
-    ),
+/// What six angles change by from 30 to 60, 90 and 120 degrees of elevation in the scapular plane: in twelve shoulders
+/// with bone pins (Ludewig et al. 2009), and by the slopes of de Groot & Brand 2001 (retraction, elevation, upward
+/// rotation, internal rotation, tilt).
+const BONE_PINS: [[f64; 3]; 6] = [
+    [4.4, 7.4, 11.7],
+    [2.9, 4.0, 5.4],
+    [6.3, 13.3, 22.4],
+    [10.5, 18.9, 28.0],
+    [0.3, 0.5, -1.3],
+    [4.4, 8.4, 13.9],
 ];
+const SLOPES: [Option<f64>; 6] =
+    [Some(0.242), Some(0.123), None, Some(0.396), Some(-0.049), Some(0.184)];
 
 impl Figure {
     /// The arm raised, taken as it is.
@@ -77,7 +58,7 @@ impl Figure {
         pose.segment(self.id("thorax")).rigid_inverse() * pose.segment(self.id(segment))
     }
 
-    /// The six angles of [`BONE_PINS`] in degrees, from the bones' axes.
+    /// The six angles of [`rest`] in degrees, from the bones' axes.
     fn angles(&self, pose: &Pose) -> [f64; 6] {
         let order: EulerOrder = "yxz".parse().expect("an order");
         let of = |bone: &str| order.from_mat3(self.in_thorax(pose, bone).linear);
@@ -104,7 +85,7 @@ fn arm([plane, elevation, rotation]: [f64; 3]) -> Mat3 {
 #[test]
 fn nothing_to_remark() {
     for name in [SHOULDER, SHAO] {
-        let figure = Figure::alone(name);
+        let figure = Figure::shipped(name);
         figure.assert_unremarked();
         figure.assert_sourced();
     }
@@ -113,7 +94,7 @@ fn nothing_to_remark() {
 #[test]
 fn at_zero_every_joint_is_at_rest() {
     for name in [SHOULDER, SHAO] {
-        let figure = Figure::alone(name);
+        let figure = Figure::shipped(name);
         for mode in [Mode::Open, Mode::Posed] {
             let pose = figure.pose(&figure.degrees(&[]), mode);
             for side in ["r", "l"] {
@@ -124,10 +105,10 @@ fn at_zero_every_joint_is_at_rest() {
                 }
                 // The arm hangs straight, its axes those of the thorax.
                 let humerus = figure.in_thorax(&pose, &format!("humerus_{side}")).linear;
-                assert!(turned(humerus, Mat3::IDENTITY) < 1e-14);
+                assert!(turned(humerus, Mat3::IDENTITY) < TOUCH);
             }
-            let rest = figure.angles(&pose);
-            for (angle, (found, expected)) in rest.iter().zip(REST).enumerate() {
+            let found = figure.angles(&pose);
+            for (angle, (found, expected)) in found.iter().zip(rest(name)).enumerate() {
                 assert!((found - expected).abs() < 1e-9, "{angle} {found}");
             }
             // With the arm hanging its plane says nothing.
@@ -145,25 +126,41 @@ fn at_zero_every_joint_is_at_rest() {
 }
 
 /// The axes of the bones are those of Ludewig et al. 2009: z of the clavicle from SC to AC, z of
-/// the scapula from the trigonum to AC, x normal to these and the inferior angle. Lengths: 137.8 mm
-/// (Saul et al. 2014); between the landmarks of Seth et al. 2019 as in ISB axes TS (0, 0, -132), AI
-/// (0, -117, -132), AC (47, 8, 0), head (44, -28, 3).
+/// the scapula from the trigonum to AC, x normal to these and the inferior angle.
+///
+/// Lengths of the shoulder of Shao & Ng-Thow-Hing: 137.8 mm (Saul et al. 2014); between the landmarks of Seth et al.
+/// 2019 as in ISB axes TS (0, 0, -132), AI (0, -117, -132), AC (47, 8, 0), head (44, -28, 3). Of the other: a clavicle
+/// of 149.4 mm with a spread of 10.3 (Bernat et al.), trigonum to lower angle 117 to 118 (three models), superior to
+/// lower angle 155 with a spread of 16, the spine to the acromion 134 with one of 12, at its edge 20 mm longer (von
+/// Schroeder et al. 2001).
 #[test]
 fn axes_are_those_of_the_landmarks() {
     for name in [SHOULDER, SHAO] {
-        let figure = Figure::alone(name);
+        let figure = Figure::shipped(name);
         let pose = figure.raised_or_rest();
         let at = |name: &str| figure.marker(&pose, name);
         let (sc, ac) = (at("sternoclavicular_r"), at("acromioclavicular_r"));
         let (ts, ai) = (at("trigonum_r"), at("inferior_angle_r"));
         let head = at("shoulder_center_r");
-        let near = |a: Vec3, b: Vec3, what: &str| assert!((a - b).norm() < 1e-4, "{what} {a:?}");
+        let near = |a: Vec3, b: Vec3, what: &str| assert!((a - b).norm() < 1e-3, "{what} {a:?}");
         let axes = |bone: &str| pose.segment(figure.id(bone)).linear;
         near((ac - sc).normalized(), axes("clavicle_r").z, "clavicle");
         let z = (ac - ts).normalized();
         let x = (ac - ts).cross(ai - ts).normalized();
         near(z, axes("scapula_r").z, "scapula z");
         near(x, axes("scapula_r").x, "scapula x");
+        if name == SHOULDER {
+            let (sa, acromion) = (at("superior_angle_r"), at("acromion_r"));
+            for (found, expected, spread) in [
+                ((ac - sc).norm(), 0.1494, 0.0103),
+                ((ts - ai).norm(), 0.1175, 0.002),
+                ((sa - ai).norm(), 0.155, 0.016),
+                ((acromion - ts).norm(), 0.154, 0.012),
+            ] {
+                assert!((found - expected).abs() < spread, "{found} {expected}");
+            }
+            continue;
+        }
         let published = |a: [f64; 3], b: [f64; 3]| 1e-3 * (Vec3::from(a) - Vec3::from(b)).norm();
         let (pts, pai) = ([0.0, 0.0, -132.0], [0.0, -117.0, -132.0]);
         let (pac, phead) = ([47.0, 8.0, 0.0], [44.0, -28.0, 3.0]);
@@ -183,7 +180,7 @@ fn axes_are_those_of_the_landmarks() {
 #[test]
 fn the_left_is_the_right_in_a_mirror() {
     for name in [SHOULDER, SHAO] {
-        let figure = Figure::alone(name);
+        let figure = Figure::shipped(name);
         let mirror = figure.mirror(|_| false);
         let mut draws = Draws(11);
         for mode in [Mode::Open, Mode::Posed] {
@@ -205,18 +202,18 @@ fn the_left_is_the_right_in_a_mirror() {
     }
 }
 
-/// Short of straight up by 4; AAOS: horizontal flexion 135. Boone & Azen 1979: rotation -104 to 69.
+/// Short of straight up by 4. Outward rotation: Boone & Azen 1979, and inward as far as a hand behind the back needs.
 /// The clavicle within 48 up, 15 down, 20 forward, 30 back of the textbooks.
 #[test]
 fn ranges_end_where_their_sources_say() {
-    let figure = Figure::alone(SHOULDER);
+    let figure = Figure::shipped(SHOULDER);
     for side in ["r", "l"] {
         for (key, low, high) in [
-            ("shoulder_plane", -90.0, 135.0),
+            ("shoulder_plane", -150.0, 150.0),
             ("shoulder_elevation", 0.0, 176.0),
-            ("shoulder_rotation", -104.0, 69.0),
-            ("shrug", -10.0, 30.0),
-            ("protraction", -15.0, 20.0),
+            ("shoulder_rotation", -104.0, 107.0),
+            ("shrug", -10.0, 32.0),
+            ("protraction", -10.0, 20.0),
         ] {
             let key = format!("{key}_{side}");
             let found = figure.range(&key);
@@ -225,52 +222,47 @@ fn ranges_end_where_their_sources_say() {
     }
 }
 
-/// The root of the mean square over 30 to 120 degrees, for each plane and angle: 18 of them.
+/// In the scapular plane, on the ribs, against the mean of two studies: how far from it each angle may be at 60, 90
+/// and 120 degrees. The clavicle goes back and the scapula tilts by less, and the scapula turns in by more, than both
+/// have it: else it would be within the ribs.
 #[test]
-fn the_rhythm_is_that_of_bone_pins() {
-    let figure = Figure::alone(SHOULDER);
-    for mode in [Mode::Open, Mode::Posed] {
-        for (plane, measured) in BONE_PINS {
-            let found = [30.0, 60.0, 90.0, 120.0].map(|elevation| {
-                let asked = [("shoulder_plane_r", plane), ("shoulder_elevation_r", elevation)];
-                figure.angles(&figure.pose(&figure.degrees(&asked), mode))
-            });
-            for (angle, pins) in measured.iter().enumerate() {
-                let squares = found.iter().zip(pins).map(|(f, p)| (f[angle] - p).powi(2));
-                let rmse = (squares.sum::<f64>() / 4.0).sqrt();
-                // Asked for are 3. The clavicle goes through the points (the weights of the planes
-                // are series with an error of 1e-7); the ribs turn the scapula by what the document
-                // says.
-                let bound = if angle < 3 { 1e-4 } else { 1.5 };
-                assert!(rmse < bound, "plane {plane} angle {angle}: {rmse}");
-            }
+fn the_rhythm_is_near_that_of_people() {
+    let figure = Figure::shipped(SHOULDER);
+    let found =
+        [30.0, 60.0, 90.0, 120.0].map(|elevation| figure.angles(&figure.raised(40.0, elevation)));
+    for (angle, allowed) in [9.0, 5.0, 3.0, 5.0, 12.0, 11.0].into_iter().enumerate() {
+        for (step, pins) in BONE_PINS[angle].into_iter().enumerate() {
+            let change = found[step + 1][angle] - found[0][angle];
+            let slope = SLOPES[angle].map(|slope| slope * 30.0 * (step + 1) as f64);
+            let mean = slope.map_or(pins, |slope| (pins + slope) / 2.0);
+            assert!((change - mean).abs() < allowed, "{angle} {step}: {change} for {mean}");
         }
     }
+    // Peeters et al. 2023, 25 of shrug: upward rotation 26 with a spread of 4, anterior tilt 3 with one of 2. The
+    // ribs turn the scapula in, where cadavers have 9 outward.
+    let shrug = figure.at(&[("shrug_r", 25.0)]);
+    let (up, down) = (figure.angles(&shrug), figure.angles(&figure.at(&[])));
+    assert!((up[3] - down[3] - 26.0).abs() < 4.0, "{}", up[3] - down[3]);
+    assert!((up[5] - down[5] + 3.0).abs() < 2.0, "{}", up[5] - down[5]);
+    assert!((up[0] - down[0] - 17.0).abs() < 5.0 && (up[1] - down[1] - 25.0).abs() < 0.5);
 }
 
-/// What all planes have in common starts without slope, so the rhythm is smooth in the direction of
-/// the arm too: a step to one side of hanging is the reverse of a step to the other. Knots have two
-/// decimals: 0.005 degrees of 15, times 2.4 for the plane between.
+/// The rhythm follows an even function of the elevation, so it is smooth in the direction of the arm too: a step to one
+/// side of hanging is the reverse of a step to the other. The even function starts like a parabola of 1/50 per degree.
 #[test]
 fn the_hanging_arm_is_no_corner() {
-    let figure = Figure::alone(SHOULDER);
+    let figure = Figure::shipped(SHOULDER);
     let step = 0.01;
     let free = Figure::of(&text(SHOULDER).replace(r#"["free", "ribs"]"#, r#"["free"]"#));
+    let rest = rest(SHOULDER);
     for plane in [-60.0, 0.0, 25.0, 90.0] {
         for (figure, angles) in [(&figure, 0..3), (&free, 0..6)] {
             let there = figure.angles(&figure.raised(plane, step));
             let back = figure.angles(&figure.raised(plane - 180.0, step));
             for i in angles {
-                let bend = (there[i] + back[i] - 2.0 * REST[i]) / step;
+                let bend = (there[i] + back[i] - 2.0 * rest[i]) / step;
                 assert!(bend.abs() < 0.01, "{plane} {i} {bend}");
             }
-        }
-    }
-    // And straight up all planes are at one place.
-    let up = free.angles(&free.raised(0.0, 180.0));
-    for plane in [-90.0, 30.0, 135.0] {
-        for (a, b) in up.iter().zip(free.angles(&free.raised(plane, 180.0))) {
-            assert!((a - b).abs() < 1e-4, "{plane} {a} {b}");
         }
     }
 }
@@ -278,7 +270,7 @@ fn the_hanging_arm_is_no_corner() {
 /// Clavicle and scapula do not turn the arm away from where it was asked to be.
 #[test]
 fn the_arm_points_where_it_was_asked_to() {
-    let figure = Figure::alone(SHOULDER);
+    let figure = Figure::shipped(SHOULDER);
     let mut draws = Draws(5);
     let first = figure.place("shoulder_plane_r");
     for _ in 0..200 {
@@ -326,7 +318,7 @@ fn the_arm_points_where_it_was_asked_to() {
 /// et al. 2005: a raised arm keeps 69 of 143 degrees of turn.
 #[test]
 fn the_cone_ends_where_people_do() {
-    let figure = Figure::alone(SHOULDER);
+    let figure = Figure::shipped(SHOULDER);
     let held = |plane: f64, elevation: f64, rotation: f64| {
         let asked = [
             ("shoulder_plane_r", plane),
@@ -364,7 +356,7 @@ fn the_cone_ends_where_people_do() {
 /// The clavicle's offsets are held as the document says, and do what their names say.
 #[test]
 fn shrug_and_protraction_move_the_clavicle() {
-    let figure = Figure::alone(SHOULDER);
+    let figure = Figure::shipped(SHOULDER);
     let with = |key: &str, value: f64, elevation: f64, mode: Mode| {
         let asked = [(key, value), ("shoulder_elevation_r", elevation)];
         figure.angles(&figure.pose(&figure.degrees(&asked), mode))
@@ -373,10 +365,11 @@ fn shrug_and_protraction_move_the_clavicle() {
         with("shrug_r", shrug, raised, Mode::Posed)[1]
             - with("shrug_r", 0.0, raised, Mode::Posed)[1]
     };
-    // Bounds are written to 1e-7 rad.
-    for (raised, low, high) in [(0.0, -10.0, 30.0), (90.0, -5.0, 22.5), (144.0, -2.0, 18.0)] {
-        assert!((elevation(-40.0, raised) - low).abs() < 1e-5, "{raised}");
-        assert!((elevation(60.0, raised) - high).abs() < 1e-5, "{raised}");
+    // The bounds at 0 and 180 degrees of the document, a straight line between.
+    for raised in [0.0, 90.0, 120.0] {
+        let (low, high) = (-10.0 + raised / 18.0, 32.0 - raised / 6.0);
+        assert!((elevation(-40.0, raised) - low).abs() < 1e-9, "{raised}");
+        assert!((elevation(60.0, raised) - high).abs() < 1e-9, "{raised}");
         assert!((elevation(5.0, raised) - 5.0).abs() < 1e-9, "{raised}");
         let [open, still] = [60.0, 0.0].map(|shrug| with("shrug_r", shrug, raised, Mode::Open)[1]);
         assert!((open - still - 60.0).abs() < 1e-9, "{raised}");
@@ -385,35 +378,27 @@ fn shrug_and_protraction_move_the_clavicle() {
         with("protraction_r", 0.0, raised, Mode::Posed)[0]
             - with("protraction_r", asked, raised, Mode::Posed)[0]
     };
-    assert!((protraction(-40.0, 0.0) + 15.0).abs() < 1e-5);
-    assert!((protraction(40.0, 0.0) - 20.0).abs() < 1e-5);
-    // At 120 degrees in the frontal plane the rhythm has it 24.8 back, 12.8 beyond where the bound
-    // begins to rise from -15 to -3 at 26.
-    let expected = -15.0 + 12.0 * 12.8 / 14.0;
-    assert!((protraction(-40.0, 120.0) - expected).abs() < 1e-4);
+    assert!((protraction(-40.0, 0.0) + 10.0).abs() < 1e-9);
+    assert!((protraction(40.0, 0.0) - 20.0).abs() < 1e-9);
+    // The farther back the rhythm has it, the less may it go on; and the higher the arm, the less forward.
+    assert!((-10.0 + 1e-3..0.0).contains(&protraction(-40.0, 120.0)));
+    assert!((protraction(40.0, 120.0) - 11.0).abs() < 1e-9);
     // The acromioclavicular joint goes up, and forward.
     let ac = |asked: &[(&str, f64)]| {
         figure.marker(&figure.pose(&figure.degrees(asked), Mode::Posed), "acromioclavicular_r")
     };
     let rest = ac(&[]);
     assert!((ac(&[("shrug_r", 20.0)]) - rest).y > 0.04);
-    assert!((ac(&[("protraction_r", 15.0)]) - rest).x > 0.03);
+    assert!((ac(&[("protraction_r", 10.0)]) - rest).x > 0.02);
 }
 
-/// The points of the first pair are on the ellipsoid at rest, and in every legal pose both points
-/// touch; in the three planes the ribs correct the rhythm by little.
+/// In every legal pose both points touch, and at rest without a turn; in three planes the ribs correct the rhythm by
+/// little.
 #[test]
 fn the_scapula_lies_on_the_ribs() {
-    let figure = Figure::alone(SHOULDER);
-    let pose = figure.at(&[]);
-    let scapula = figure.in_thorax(&pose, "scapula_r");
-    for point in
-        [Vec3::new(0.010384950701, -0.03, -0.1303), Vec3::new(0.0147733813099, -0.0768, -0.112)]
-    {
-        let off = scapula * point - Vec3::new(-0.037, 0.002, 0.052);
-        let on = (off.x / 0.083).powi(2) + (off.y / 0.186).powi(2) + (off.z / 0.083).powi(2);
-        assert!((on - 1.0).abs() < 1e-10, "{on}");
-    }
+    let figure = Figure::shipped(SHOULDER);
+    let report = figure.at(&[]).contact(0).expect("a contact");
+    assert!(report.angles.iter().chain(&report.gaps).all(|x| x.abs() < TOUCH), "{report:?}");
     let mut draws = Draws(23);
     let draws_of = if cfg!(debug_assertions) { 500 } else { 20_000 };
     for _ in 0..draws_of {
@@ -427,12 +412,12 @@ fn the_scapula_lies_on_the_ribs() {
             assert!(most < 30.0, "{stored:?} {most}");
         }
     }
-    for (plane, _) in BONE_PINS {
+    for plane in [0.0, 40.0, 90.0] {
         for elevation in (0..=165).step_by(5) {
             let pose = figure.raised(plane, f64::from(elevation));
             let report = pose.contact(0).expect("a contact");
             let [first, second] = report.angles.map(|a| a.abs().to_degrees());
-            assert!(first < 1.2 && second < 3.3, "{plane} {elevation} {first} {second}");
+            assert!(first < 6.0 && second < 9.0, "{plane} {elevation} {first} {second}");
         }
     }
 }
@@ -445,7 +430,7 @@ fn the_scapula_lies_on_the_ribs() {
 /// contact that changes sides, or a cone that lets go, is hundreds of steps.
 #[test]
 fn paths_are_smooth() {
-    let figure = Figure::alone(SHOULDER);
+    let figure = Figure::shipped(SHOULDER);
     let step = 0.05_f64.to_radians();
     let mut draws = Draws(3);
     let paths = if cfg!(debug_assertions) { 20 } else { 60 };
@@ -473,7 +458,7 @@ fn the_thorax_may_move() {
     let trunk =
         "\n[joint.trunk]\ntype = \"hinge\"\nsegment = \"thorax\"\naxis = [0.3, 0.9, -0.2]\n";
     for name in [SHOULDER, SHAO] {
-        let still = Figure::alone(name);
+        let still = Figure::shipped(name);
         let moving = Figure::of(&format!("{}{trunk}", text(name)));
         let mut draws = Draws(31);
         for mode in [Mode::Open, Mode::Posed] {

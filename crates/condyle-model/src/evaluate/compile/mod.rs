@@ -287,6 +287,12 @@ impl Compiler<'_> {
         let mut routes: HashMap<Signal, (CoordinateId, Vec<Between>)> = HashMap::new();
         let mut last: HashMap<CoordinateId, Behind> = HashMap::new();
         let direct: Vec<CoordinateId> = self.effective.values().copied().collect();
+        let mut readers: HashMap<CoordinateId, usize> = HashMap::new();
+        for input in self.model.components.iter().flat_map(|component| &component.inputs) {
+            if let Signal::Coordinate(id) = input {
+                *readers.entry(*id).or_default() += 1;
+            }
+        }
         for node in order {
             let Node::Component(id) = *node else { continue };
             let component = &self.model.components[id.index()];
@@ -315,10 +321,17 @@ impl Compiler<'_> {
                     };
                     let all: Option<Vec<_>> = component.inputs.iter().map(coordinate).collect();
                     let Some(coordinates) = all else { continue };
-                    let mut open =
-                        (0..coordinates.len()).filter(|&k| !direct.contains(&coordinates[k]));
-                    // One that is not settled by a limit of its own: it makes up for the others.
-                    let (Some(at), None) = (open.next(), open.next()) else { continue };
+                    let open: Vec<usize> = (0..coordinates.len())
+                        .filter(|&k| !direct.contains(&coordinates[k]))
+                        .collect();
+                    // One that is not settled by a limit of its own makes up for the others; of several, the
+                    // one that nothing else reads, such as a finger's part of a spread that all share.
+                    let own = |k: &&usize| readers.get(&coordinates[**k]) == Some(&1);
+                    let at = match (&open[..], &open.iter().filter(own).collect::<Vec<_>>()[..]) {
+                        ([at], _) => *at,
+                        (_, [at]) => **at,
+                        _ => continue,
+                    };
                     let (own, function) = (coordinates[at], combine.function.clone());
                     let step = Between::Several { function, coordinates, at };
                     found.push((Signal::Output(id, 0), (own, vec![step])));

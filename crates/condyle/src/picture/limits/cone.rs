@@ -1,0 +1,259 @@
+//! A reach cone: the directions in which a bone may point, as a part of a sphere about its joint. Its shade
+//! tells how far the bone may twist there: yellow the least of this cone, green-blue the most.
+
+use super::super::figure::Figure;
+use super::super::marks::line;
+use super::{OPACITY, fan, value};
+use condyle_math::{Mat3, Quat, Vec3};
+use condyle_model::component::{JointCone, Swinging};
+use condyle_model::evaluate::Bound;
+use condyle_model::{Cone, Mode, Pose, SegmentId};
+use condyle_render::{Scene, Surface, palette, shape};
+
+/// Parts of the way from rest to the boundary, and shades.
+const RINGS: usize = 12;
+const SHADES: usize = 16;
+
+/// Draws a cone.
+pub(super) fn draw(figure: &Figure, bound: &Bound, law: &JointCone, scene: &mut Scene) {
+    let Some(rotation) = rotation(law, &figure.pose.bounded(bound).collect::<Vec<f64>>()) else {
+        return;
+    };
+    let Some((segment, frame)) = frame(figure, bound, law, rotation) else { return };
+    if !figure.is_signed(segment) {
+        return;
+    }
+    let centre = figure.joint(segment).translation;
+    let bone = (figure.far_end(segment) - centre).norm();
+    let radius = (0.45 * bone).clamp(1.5 * figure.unit, 4.0 * figure.unit);
+    let place = |direction: Vec3| centre + frame * direction * radius;
+    let cone = &law.cone;
+    let mut boundary: Vec<Vec3> = cone.boundary().collect();
+    boundary.extend(boundary.first().copied());
+    scene.surfaces.extend(sphere(cone, &boundary, &place));
+    let edge: Vec<Vec3> = boundary.iter().map(|&direction| place(direction)).collect();
+    scene.surfaces.push(fan(centre, &edge, palette::LIMIT).with_opacity(0.4 * OPACITY));
+    scene.lines.push(line(edge, 2.0, palette::LIMIT));
+    let now = place(rotation * cone.rest().normalized());
+    scene.lines.push(value(centre, now));
+    let mut mark = Surface::empty(palette::VALUE);
+    shape::add_ball(&mut mark, now, 0.08 * figure.unit, (14, 10));
+    scene.surfaces.push(mark);
+}
+
+/// The part of the sphere, a surface for each shade.
+fn sphere(cone: &Cone, boundary: &[Vec3], place: &dyn Fn(Vec3) -> Vec3) -> Vec<Surface> {
+    let rest = cone.rest().normalized();
+    let width = |direction: Vec3| cone.twist_bounds(direction).map(|([low, high], _)| high - low);
+    let rows: Vec<Vec<Vec3>> = (0..=RINGS)
+        .map(|ring| {
+            let share = ring as f64 / RINGS as f64;
+            boundary.iter().map(|&end| between(rest, end, share)).collect()
+        })
+        .collect();
+    let middle = |ring: usize, i: usize| {
+        let (inner, outer) = (&rows[ring], &rows[ring + 1]);
+        (inner[i] + inner[i + 1] + outer[i] + outer[i + 1]).normalized()
+    };
+    let patches = || {
+        let along = boundary.len().saturating_sub(1);
+        (0..RINGS).flat_map(move |ring| (0..along).map(move |i| (ring, i)))
+    };
+    let widths: Vec<Option<f64>> = patches().map(|(ring, i)| width(middle(ring, i))).collect();
+    let known = || widths.iter().flatten().copied().filter(|w| w.is_finite());
+    let (low, high) = (known().fold(f64::INFINITY, f64::min), known().fold(0.0, f64::max));
+    let mut shades: Vec<Surface> = (0..SHADES)
+        .map(|shade| {
+            let share = shade as f64 / (SHADES - 1) as f64;
+            let mixed = [0, 1, 2].map(|i| {
+                let [from, to] = [palette::LIMIT_LOW[i], palette::LIMIT[i]].map(f64::from);
+                (from + (to - from) * share).round() as u8
+            });
+            Surface::empty(mixed).with_opacity(1.4 * OPACITY)
+        })
+        .collect();
+    for ((ring, i), width) in patches().zip(&widths) {
+        let share = match width {
+            Some(width) if high > low + 1e-9 => (width - low) / (high - low),
+            _ => 1.0,
+        };
+        let shade = (share * (SHADES - 1) as f64).round().clamp(0.0, (SHADES - 1) as f64);
+        let surface = &mut shades[shade as usize];
+        let corners = [(ring, i), (ring + 1, i), (ring + 1, i + 1), (ring, i + 1)];
+        let [a, b, c, d] = corners.map(|(ring, i)| {
+            let direction = rows[ring][i];
+            let at = place(direction);
+            surface.corner(at, at - place(Vec3::ZERO))
+        });
+        if ring > 0 {
+            surface.triangles.push([a, c, d]);
+        }
+        surface.triangles.push([a, b, c]);
+    }
+    shades.retain(|surface| !surface.triangles.is_empty());
+    shades
+}
+
+/// A direction on the great arc between two.
+fn between(from: Vec3, to: Vec3, share: f64) -> Vec3 {
+    let angle = from.cross(to).norm().atan2(from.dot(to));
+    let whole = angle.sin();
+    if whole < 1e-9 {
+        return from;
+    }
+    from * (((1.0 - share) * angle).sin() / whole) + to * ((share * angle).sin() / whole)
+}
+
+/// The rotation that a cone limits, of the numbers at its ports.
+fn rotation(law: &JointCone, numbers: &[f64]) -> Option<Mat3> {
+    let turn =
+        |(axis, angle): (&Vec3, &f64)| Mat3::rotation_about(axis.normalized(), angle.sin_cos());
+    let product = |axes: &[Vec3]| {
+        let turns = axes.iter().zip(numbers).map(turn);
+        turns.fold(Mat3::IDENTITY, |all, turn| all * turn)
+    };
+    let found = match &law.of {
+        Swinging::Angles(axes) => product(axes),
+        Swinging::Directions(axes) => product(axes),
+        Swinging::Orientation => {
+            let &[x, y, z, w] = numbers else { return None };
+            Quat { x, y, z, w }.to_mat3()
+        }
+    };
+    found.x.is_finite().then_some(found)
+}
+
+/// The segment that the rotation turns, and the frame in the world in which it does: that of an ancestor, with
+/// its joint, or of the world.
+///
+/// Found by comparing: in this pose and in one beside it, the segment has to be turned in the frame as the
+/// cone says, or its bone to point there. Where no frame does, the one that this pose alone gives.
+fn frame(figure: &Figure, bound: &Bound, law: &JointCone, now: Mat3) -> Option<(SegmentId, Mat3)> {
+    let model = figure.model;
+    let mut best: Option<(f64, SegmentId, Mat3)> = None;
+    let set = model.components()[bound.component.index()].joint_set;
+    let beside = beside(figure)?;
+    let turned = rotation(law, &beside.bounded(bound).collect::<Vec<f64>>())?;
+    for (id, _) in model.outputs_of(set) {
+        let frames = frames(figure, figure.pose, id);
+        for (frame, then) in frames.into_iter().zip(self::frames(figure, &beside, id)) {
+            let own = |pose: &Pose| (pose.segment(id) * model.segment(id).joint_in_segment).linear;
+            let off =
+                off(law, own(figure.pose), frame * now) + off(law, own(&beside), then * turned);
+            if off.is_finite() && best.as_ref().is_none_or(|(least, ..)| off < *least - 1e-6) {
+                best = Some((off, id, frame));
+            }
+        }
+    }
+    let (off, id, frame) = best?;
+    let forced = figure.joint(id).linear * now.transpose();
+    Some((id, if off < 0.02 { frame } else { forced }))
+}
+
+/// How far a rotation is from what a cone speaks of: in all, or in where the bone points.
+fn off(law: &JointCone, own: Mat3, said: Mat3) -> f64 {
+    match law.of {
+        Swinging::Directions(_) => {
+            let rest = law.cone.rest().normalized();
+            (own * rest - said * rest).norm()
+        }
+        _ => (said.transpose() * own).log().norm(),
+    }
+}
+
+/// The frames in which a segment may be turned.
+fn frames(figure: &Figure, pose: &Pose, id: SegmentId) -> Vec<Mat3> {
+    let segment = figure.model.segment(id);
+    let hung = pose.frame(segment.parent).linear;
+    let ancestors = figure.model.path_to_root(id).skip(1).map(|id| pose.segment(id).linear);
+    let joint = [hung * segment.joint_in_parent.linear, hung];
+    joint.into_iter().chain(ancestors).chain([pose.frame(None).linear]).collect()
+}
+
+/// A pose in which everything is turned a little, each coordinate by another amount.
+fn beside(figure: &Figure) -> Option<Pose> {
+    let model = figure.model;
+    let step: Vec<f64> = (0..model.tangent_len()).map(|i| 0.1 + 0.03 * (i % 7) as f64).collect();
+    let mut stored = figure.stored.to_vec();
+    model.retract(figure.stored, &step, &mut stored);
+    let mut pose = Pose::new(figure.program);
+    figure.program.evaluate(&stored, Mode::Open, &mut pose).ok().map(|()| pose)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::figure::tests::seen;
+    use super::*;
+    use condyle_model::Law;
+
+    /// The cone of the shipped shoulder speaks of the humerus in the thorax, that of the hip of the femur in the
+    /// pelvis: also where both are turned.
+    #[test]
+    fn a_cone_stands_in_the_frame_that_its_angles_are_in() {
+        let human = crate::shipped::read("human").expect("it is shipped").value.model;
+        let mut stored = human.defaults();
+        let step: Vec<f64> =
+            (0..human.tangent_len()).map(|i| 0.02 + 0.01 * (i % 5) as f64).collect();
+        human.retract(&human.defaults(), &step, &mut stored);
+        seen(&human, &stored, |figure| {
+            let mut found = vec![];
+            for bound in figure.program.bounds() {
+                let component = &human.components()[bound.component.index()];
+                let Law::Cone(law) = &component.law else { continue };
+                let numbers: Vec<f64> = figure.pose.bounded(bound).collect();
+                let turned = rotation(law, &numbers).expect("a rotation");
+                let (segment, frame) = frame(figure, bound, law, turned).expect("a frame");
+                let base = match &human.segment(segment).name[..] {
+                    "humerus_r" | "humerus_l" => "thorax",
+                    "femur_r" | "femur_l" => "pelvis",
+                    _ => continue,
+                };
+                let base = figure.pose.segment(human.find_segment(base).unwrap()).linear;
+                assert!((base.transpose() * frame).log().norm() < 1e-9, "{}", component.name);
+                // And the bone points there as the cone says.
+                let rest = law.cone.rest().normalized();
+                let off = figure.joint(segment).linear * rest - frame * (turned * rest);
+                assert!(off.norm() < 1e-9, "{}: {}", component.name, off.norm());
+                found.push(human.segment(segment).name.clone());
+            }
+            found.sort();
+            assert_eq!(found, ["femur_l", "femur_r", "humerus_l", "humerus_r"]);
+        });
+    }
+
+    #[test]
+    fn the_sphere_ends_at_the_boundary_and_its_shade_is_the_twist() {
+        let at = |x: f64, y: f64, z: f64, twist: [f64; 2]| condyle_model::ConePoint {
+            direction: Vec3::new(x, y, z),
+            twist: Some(twist),
+        };
+        let points = vec![
+            at(1.0, -1.0, 0.0, [-0.1, 0.1]),
+            at(0.0, -1.0, -1.0, [-1.0, 1.0]),
+            at(-1.0, -1.0, 0.0, [-1.0, 1.0]),
+            at(0.0, -1.0, 1.0, [-1.0, 1.0]),
+        ];
+        let rest = -Vec3::Y;
+        let made = |points: Vec<_>| {
+            let projection = condyle_model::Projection::TowardRest;
+            Cone::new(rest, Some([-1.0, 1.0]), points, 0, projection)
+        };
+        let mut turned = points.clone();
+        turned.reverse();
+        let cone = made(points).or_else(|_| made(turned)).expect("a cone");
+        let mut boundary: Vec<Vec3> = cone.boundary().collect();
+        boundary.push(boundary[0]);
+        let surfaces = sphere(&cone, &boundary, &|direction| direction * 2.0);
+        let corners = || surfaces.iter().flat_map(|s| &s.positions).map(|&p| Vec3::from(p));
+        assert!(corners().all(|p| (p.norm() - 2.0).abs() < 1e-12), "on the sphere");
+        // The corners of the cone are 45° from rest.
+        let lowest = corners().map(|p| p.dot(rest) / 2.0).fold(1.0, f64::min);
+        assert!((lowest - 45f64.to_radians().cos()).abs() < 1e-12);
+        // Least twist toward x: yellower there than on the other side.
+        let shade = |x: f64| {
+            let near = |s: &&Surface| s.positions.iter().any(|p| (p[0] - x).abs() < 0.06);
+            surfaces.iter().filter(near).map(|s| s.colour[0]).max().expect("a patch")
+        };
+        assert!(shade(1.4) > shade(-1.4), "{} {}", shade(1.4), shade(-1.4));
+    }
+}

@@ -1,0 +1,18 @@
+#!/bin/sh
+# The pictures of the README and the manual: docs/pictures/make.sh [CONDYLE]
+#
+# What each is after: spine, knee and shoulder are Plates 1 and 6 and Figure 5 of Shao & Ng-Thow-Hing 2003 on models of
+# our own; shoulder-shao2003 and spine-shao2003 are the paper's.
+set -eu
+condyle=${1:-target/release/condyle}
+here=$(dirname "$0")
+
+"$condyle" render human --view front --view side --view back --view 35,12 --size 1000x540 -o "$here/human.png"
+"$condyle" render human --pose "$here/shoulder.json" --view back --at scapula_r,scapula_l,humerus_r --zoom 2.6 --size 1000x330 -o "$here/shoulder.png"
+"$condyle" render spine --pose "$here/spine.json" --view 60,8 --at vt6 --zoom 1.9 --size 1200x380 -o "$here/spine.png"
+"$condyle" render human --pose "$here/knee.json" --view side --at knee_r --zoom 5 --show bones,centres --size 1200x360 -o "$here/knee.png"
+"$condyle" render arms --pose "$here/hand.json" --view 20,0 --at hand_r --zoom 2.6 --size 700x380 -o "$here/hand.png"
+"$condyle" render human --view 20,10 --at shoulder_r --zoom 3 --show bones,limits --size 700x480 -o "$here/cone.png"
+"$condyle" render shoulder --view back --at thorax --zoom 1.0 --show bones,contacts --size 700x480 -o "$here/contact.png"
+"$condyle" render spine-shao2003 --view side --view front --size 700x420 -o "$here/spine-shao2003.png"
+"$condyle" render shoulder-shao2003 --view 20,10 --show bones,limits,contacts --size 700x420 -o "$here/shoulder-shao2003.png"
