@@ -5,7 +5,7 @@
 //! In posed mode illegal angles are replaced by those of the legal rotation that the cone's
 //! projection gives, so that a [`Pivot`](super::Pivot) after the cone has its centre at the legal
 //! angle. Of the two triples of angles of a rotation the one on the side of gimbal lock where the
-//! requested angles are is used. In open mode the angles pass unchanged, and up to three limit rows are computed: the
+//! angles are 0 is used. In open mode the angles pass unchanged, and up to three limit rows are computed: the
 //! distance of the direction from the boundary, and those of the twist from its lower and its upper
 //! bound.
 //!
@@ -97,7 +97,7 @@ impl JointCone {
     }
 
     /// The angles that rotate the third axis to `w` (and give `rotation`): of the two sets that do, the one on the
-    /// side of gimbal lock where the requested ones are.
+    /// side of gimbal lock where they are 0.
     fn angles(&self, w: Vec3, rotation: Option<Mat3>, asked: &[f64]) -> [f64; 4] {
         let Some([a, b, c]) = self.axes() else { return [0.0, 0.0, 0.0, 1.0] };
         if self.obliqueness() > 1e-6 {
@@ -126,11 +126,12 @@ impl JointCone {
             let far: f64 = found.iter().zip(asked).map(|(x, y)| (x - y) * (x - y)).sum();
             (far, found)
         };
-        // Angles stay on the side of gimbal lock on which they were asked: beyond it, two angles that give the same
-        // direction turn the bone about it by half a turn.
-        let side_asked = (asked[1] + lead).sin();
-        if side_asked.abs() > 1e-6 {
-            return solve(side_asked.signum()).1;
+        // Angles are on the side of gimbal lock where they are 0: beyond it, two angles that give the same direction
+        // turn the bone about it by half a turn, and leave any range. Where 0 is itself at gimbal lock, they stay on
+        // the side where they were asked.
+        let side = if lead.sin().abs() > 1e-6 { lead.sin() } else { (asked[1] + lead).sin() };
+        if side.abs() > 1e-6 {
+            return solve(side.signum()).1;
         }
         let ((far, found), (other_far, other)) = (solve(1.0), solve(-1.0));
         if other_far < far { other } else { found }
