@@ -13,6 +13,6 @@ here=$(dirname "$0")
 "$condyle" render human --pose "$here/knee.json" --view side --at knee_r --zoom 5 --show bones,centres --size 1200x360 -o "$here/knee.png"
 "$condyle" render arms --pose "$here/hand.json" --view 20,0 --at hand_r --zoom 2.6 --size 700x380 -o "$here/hand.png"
 "$condyle" render human --view 20,10 --at shoulder_r --zoom 3 --show bones,limits --size 700x480 -o "$here/cone.png"
-"$condyle" render shoulder --view back --at thorax --zoom 1.0 --show bones,contacts --size 700x480 -o "$here/contact.png"
+"$condyle" render shoulder --view back --at scapula_r --zoom 1.2 --show bones,contacts --size 700x480 -o "$here/contact.png"
 "$condyle" render spine-shao2003 --view side --view front --size 700x420 -o "$here/spine-shao2003.png"
 "$condyle" render shoulder-shao2003 --view 20,10 --show bones,limits,contacts --size 700x420 -o "$here/shoulder-shao2003.png"
