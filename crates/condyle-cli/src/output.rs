@@ -243,6 +243,19 @@ pub(crate) fn columns(rows: &[Vec<String>]) -> String {
     text
 }
 
+/// How many names a line holds.
+const FEW: usize = 6;
+
+/// The first of some names, and how many more there are.
+pub(crate) fn few(names: impl ExactSizeIterator<Item = String>) -> String {
+    let more = names.len().saturating_sub(FEW);
+    let mut list = names.take(FEW).collect::<Vec<_>>().join(", ");
+    if more > 0 {
+        list.push_str(&format!(" and {more} more"));
+    }
+    list
+}
+
 /// A head and names after it, in lines of at most 96 characters; further lines are indented.
 pub(crate) fn wrapped(head: &str, names: &[&str]) -> String {
     const WIDTH: usize = 96;

@@ -44,14 +44,40 @@ impl Tube {
     }
 }
 
+/// How far the surface may be from the smooth one where a ring is left out, in metres.
+const FLATNESS: f64 = 2e-4;
+
+/// The curve without the points between whose neighbours it is straight, and grows evenly, all the same.
+fn thinned(curve: &[Knot]) -> Vec<Knot> {
+    let mut kept = curve[..1].to_vec();
+    let mut from = 0;
+    while from + 1 < curve.len() {
+        let straight = |&to: &usize| {
+            let ((start, first), (end, last)) = (curve[from], curve[to]);
+            (from + 1..to).all(|i| {
+                let ((at, radii), share) = (curve[i], (i - from) as f64 / (to - from) as f64);
+                let on = start + (end - start) * share;
+                let thick = |k: usize| first[k] + (last[k] - first[k]) * share - radii[k];
+                (at - on).norm() < FLATNESS && thick(0).abs().max(thick(1).abs()) < FLATNESS
+            })
+        };
+        // At most two spans of a tube at once: what bends with two segments needs some rings.
+        let next = (from + 1..=(from + 2 * STEPS).min(curve.len() - 1)).take_while(straight).last();
+        from = next.unwrap_or(from + 1);
+        kept.push(curve[from]);
+    }
+    kept
+}
+
 /// The surface of a curve with its sections.
 pub(crate) fn swept(curve: &[Knot], across: Vec3) -> Mesh {
     if curve.is_empty() {
         return Mesh::default();
     }
     let widest = curve.iter().flat_map(|(_, r)| *r).fold(0.0, f64::max);
-    // About 4 mm from corner to corner, 8 to 28 of them.
-    let around = ((TAU * widest / 0.004) as usize).clamp(8, 28);
+    // About 5 mm from corner to corner, 8 to 24 of them.
+    let around = ((TAU * widest / 0.005) as usize).clamp(8, 24);
+    let curve = &thinned(curve)[..];
     let tangent = |i: usize| {
         let (a, b) = (i.saturating_sub(1), (i + 1).min(curve.len() - 1));
         unit(curve[b].0 - curve[a].0)

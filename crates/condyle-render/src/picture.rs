@@ -30,11 +30,46 @@ pub struct Picture<'a> {
     camera: Camera,
     width: usize,
     height: usize,
-    opaque: Vec<Triangle>,
-    lines: Vec<Triangle>,
-    glass: Vec<Triangle>,
+    opaque: Layer,
+    lines: Layer,
+    glass: Layer,
     ground: Option<ground::Seen>,
     screen: Screen,
+}
+
+/// Triangles in the order in which they are drawn.
+#[derive(Default)]
+struct Layer {
+    triangles: Vec<Triangle>,
+    /// Of each band, those that reach into it or into what darkens it.
+    bands: Vec<Vec<u32>>,
+}
+
+impl Layer {
+    /// Notes which bands the triangles reach into.
+    fn sort(&mut self, bands: usize) {
+        self.bands = vec![vec![]; bands];
+        let (high, beyond) = ((BAND * SAMPLES) as f64, (BEYOND * SAMPLES) as f64);
+        for (number, triangle) in (0u32..).zip(&self.triangles) {
+            let [top, bottom] = triangle.rows;
+            let (top, bottom) = ((top - beyond) / high, (bottom + beyond) / high);
+            if bottom < 0.0 || top >= bands as f64 {
+                continue;
+            }
+            // A row on the border of two bands belongs to either: both look.
+            let first = (top.ceil() - 1.0).max(0.0) as usize;
+            let last = (bottom as usize).min(bands - 1);
+            self.bands[first..=last].iter_mut().for_each(|band| band.push(number));
+        }
+    }
+
+    /// Draws what reaches into a band.
+    fn draw(&self, band: usize, samples: &mut Band) {
+        for &number in self.bands.get(band).into_iter().flatten() {
+            let triangle = &self.triangles[number as usize];
+            samples.triangle(triangle.corners, &triangle.paint);
+        }
+    }
 }
 
 struct Triangle {
@@ -68,9 +103,9 @@ impl<'a> Picture<'a> {
             camera: *camera,
             width,
             height,
-            opaque: vec![],
-            lines: vec![],
-            glass: vec![],
+            opaque: Layer::default(),
+            lines: Layer::default(),
+            glass: Layer::default(),
             ground: None,
             screen: Screen::new(),
         };
@@ -81,7 +116,11 @@ impl<'a> Picture<'a> {
         picture.ground = scene.ground.as_ref().and_then(|g| ground::Seen::new(g, camera, pixel));
         scene.surfaces.iter().for_each(|surface| picture.surface(surface));
         scene.lines.iter().for_each(|line| picture.line(line));
-        picture.glass.sort_by(|a, b| a.nearest().total_cmp(&b.nearest()));
+        picture.glass.triangles.sort_by(|a, b| a.nearest().total_cmp(&b.nearest()));
+        let bands = picture.bands();
+        for layer in [&mut picture.opaque, &mut picture.lines, &mut picture.glass] {
+            layer.sort(bands);
+        }
         picture
     }
 
@@ -130,8 +169,8 @@ impl<'a> Picture<'a> {
             let faces = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) <= 0.0;
             let turn = if faces { 1.0 } else { -1.0 };
             let paint = Paint::Lit([*na * turn, *nb * turn, *nc * turn], colour, opacity);
-            let list = if opacity >= 1.0 { &mut self.opaque } else { &mut self.glass };
-            list.extend(Triangle::new([*a, *b, *c], paint));
+            let layer = if opacity >= 1.0 { &mut self.opaque } else { &mut self.glass };
+            layer.triangles.extend(Triangle::new([*a, *b, *c], paint));
         }
     }
 
@@ -171,8 +210,8 @@ impl<'a> Picture<'a> {
             };
             let corners =
                 [moved(a, p, 1.0), moved(a, p, -1.0), moved(b, q, -1.0), moved(b, q, 1.0)];
-            self.lines.extend(Triangle::new([corners[0], corners[1], corners[2]], paint));
-            self.lines.extend(Triangle::new([corners[0], corners[2], corners[3]], paint));
+            self.lines.triangles.extend(Triangle::new([corners[0], corners[1], corners[2]], paint));
+            self.lines.triangles.extend(Triangle::new([corners[0], corners[2], corners[3]], paint));
         }
     }
 
@@ -189,21 +228,13 @@ impl<'a> Picture<'a> {
         let from = first.saturating_sub(BEYOND);
         let rows = (first + wanted + BEYOND).min(self.height).saturating_sub(from);
         let mut samples = Band::new(self.width, from, rows);
-        let (top, bottom) = ((from * SAMPLES) as f64, ((from + rows) * SAMPLES) as f64);
-        let here = |triangle: &&Triangle| triangle.rows[1] >= top && triangle.rows[0] <= bottom;
-        for triangle in self.opaque.iter().filter(here) {
-            samples.triangle(triangle.corners, &triangle.paint);
-        }
+        self.opaque.draw(band, &mut samples);
         samples.crease(self.step());
         if let Some(ground) = &self.ground {
             samples.ground(ground, (self.corner(), self.step()));
         }
-        for triangle in self.lines.iter().filter(here) {
-            samples.triangle(triangle.corners, &triangle.paint);
-        }
-        for triangle in self.glass.iter().filter(here) {
-            samples.triangle(triangle.corners, &triangle.paint);
-        }
+        self.lines.draw(band, &mut samples);
+        self.glass.draw(band, &mut samples);
         samples.pixels(&self.screen, first - from..first - from + wanted)
     }
 

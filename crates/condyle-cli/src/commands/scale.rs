@@ -141,8 +141,9 @@ fn table(scaled: &Scaled, kept: bool) -> String {
         1e3 * scaled.rms_after,
     ));
     if !scaled.unused.is_empty() {
-        let names: Vec<&str> = scaled.unused.iter().map(String::as_str).collect();
-        text.push_str(&output::wrapped("not used:", &names));
+        let (n, names) = (scaled.unused.len(), scaled.unused.iter());
+        let few = output::few(names.map(|name| format!("`{name}`")));
+        text.push_str(&format!("  {n} markers not used: {few}\n"));
     }
     let by = |m: &MarkerFit| if kept { m.error } else { m.moved };
     let mut far: Vec<&MarkerFit> = scaled.markers.iter().collect();

@@ -91,7 +91,7 @@ pub fn draw(model: &Model, sheet: &Sheet) -> Result<Canvas, Error> {
     // First the places, since all cells have one scale.
     let mut placed = vec![];
     for posed in &sheet.poses {
-        evaluate(&posed.stored, &mut |figure| placed.push(Placed::of(figure, chosen.as_ref())))?;
+        evaluate(&posed.stored, &mut |figure| placed.push(Placed::of(figure, &sheet.show)))?;
     }
     let cameras = cameras(model, sheet, &placed, &layout);
     let ground = ground(model, &placed);
@@ -165,6 +165,8 @@ fn scene(figure: &Figure, show: &[Show]) -> Scene {
 struct Placed {
     /// The box of all bones.
     whole: Bounds,
+    /// The box of all that is in the frame: bones, and what they glide on where that is shown.
+    all: Bounds,
     /// The box of what is looked at.
     looked: Bounds,
     /// The middle of the joints of joint sets that are looked at, where there are any.
@@ -174,21 +176,28 @@ struct Placed {
 }
 
 impl Placed {
-    fn of(figure: &Figure, chosen: Option<&Chosen>) -> Self {
+    fn of(figure: &Figure, show: &[Show]) -> Self {
         let surfaces = bones::surfaces(figure);
         let of = |only: Option<&Chosen>| {
             let kept = surfaces.iter().filter(|(id, _)| only.is_none_or(|c| c.has(*id)));
             Bounds::of(kept.flat_map(|(_, surface)| surface.positions.iter().copied()))
         };
+        // Other signs are as large as suits the frame.
+        let mut signs = Scene::default();
+        if show.contains(&Show::Contacts) {
+            contacts::contacts(figure, false, &mut signs);
+        }
+        let with = |bounds: Bounds| signs.bounds().map_or(bounds, |signs| bounds.with(signs));
+        let chosen = figure.chosen;
         let around = Bounds { low: [-0.5; 3], high: [0.5; 3] };
         let whole = of(None).unwrap_or(around);
-        let looked = of(chosen).unwrap_or(whole);
+        let (all, looked) = (with(whole), with(of(chosen).unwrap_or(whole)));
         let first = figure.model.parents_first().first().map(|&id| figure.pose.segment(id));
         let root = first.map_or(Vec3::ZERO, |frame| frame.translation);
         let joints = chosen.map_or(&[][..], |chosen| &chosen.joints);
         let joints = joints.iter().map(|&id| figure.joint(id).translation.to_array());
         let joints = Bounds::of(joints).map(|bounds| Vec3::from(bounds.centre()));
-        Self { whole, looked, joints, root: if root.is_finite() { root } else { Vec3::ZERO } }
+        Self { whole, all, looked, joints, root: if root.is_finite() { root } else { Vec3::ZERO } }
     }
 
     /// The ground under it.
@@ -213,7 +222,7 @@ fn cameras(model: &Model, sheet: &Sheet, placed: &[Placed], layout: &Layout) -> 
         low: (Vec3::from(bounds.low) - off).to_array(),
         high: (Vec3::from(bounds.high) - off).to_array(),
     };
-    let whole = placed.iter().map(|p| moved(&p.whole, away(p))).reduce(Bounds::with);
+    let whole = placed.iter().map(|p| moved(&p.all, away(p))).reduce(Bounds::with);
     let mut cameras = vec![];
     for view in &sheet.views {
         let camera = view.camera(model);

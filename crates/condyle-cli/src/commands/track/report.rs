@@ -141,7 +141,7 @@ pub(super) fn print(
     text.push_str(&unused("model", "recording", report, &report.unused.model));
     text.push_str(&unused("recording", "model", report, &report.unused.recording));
     if !report.mostly_at_limit.is_empty() {
-        let keys = few(report.mostly_at_limit.iter().cloned());
+        let keys = output::few(report.mostly_at_limit.iter().cloned());
         text.push_str(&format!("  mostly at a limit: {keys}\n"));
     }
     let unsure = report.determination.iter();
@@ -150,11 +150,11 @@ pub(super) fn print(
     if !unsure.is_empty() {
         text.push_str(&format!(
             "  hardly determined by the markers: {}\n",
-            few(unsure.into_iter())
+            output::few(unsure.into_iter())
         ));
     }
     if !report.unmoved.is_empty() {
-        let keys = few(report.unmoved.iter().cloned());
+        let keys = output::few(report.unmoved.iter().cloned());
         text.push_str(&format!("  move no marker, held at rest: {keys}\n"));
     }
     for beyond in &report.beyond_range {
@@ -185,26 +185,13 @@ fn names(unused: &[Unused]) -> Vec<&str> {
     unused.iter().map(|one| one.name.as_str()).collect()
 }
 
-/// How many names a line holds.
-const FEW: usize = 6;
-
-/// The first of some names, and how many more there are.
-fn few(names: impl ExactSizeIterator<Item = String>) -> String {
-    let more = names.len().saturating_sub(FEW);
-    let mut list = names.take(FEW).collect::<Vec<_>>().join(", ");
-    if more > 0 {
-        list.push_str(&format!(" and {more} more"));
-    }
-    list
-}
-
 /// A line about markers that both sides have and that were not used all the same.
 fn left_out(why: &str, names: &[String]) -> String {
     if names.is_empty() {
         return String::new();
     }
     let quoted = names.iter().map(|name| format!("`{name}`"));
-    format!("  {} {why}, not used: {}\n", names.len(), few(quoted))
+    format!("  {} {why}, not used: {}\n", names.len(), output::few(quoted))
 }
 
 /// A line about the names of one side that the other does not have, those with a likely partner first.
@@ -222,5 +209,5 @@ fn unused(side: &str, other: &str, report: &Report, unused: &[Unused]) -> String
     });
     let n = sorted.len();
     let noun = if n == 1 { "marker" } else { "markers" };
-    format!("  {n} {noun} of the {side} not used: {}\n", few(said))
+    format!("  {n} {noun} of the {side} not used: {}\n", output::few(said))
 }
