@@ -21,7 +21,7 @@
 mod read;
 mod write;
 
-pub use read::read;
+pub use read::{read, read_with};
 pub use write::write;
 
 /// The key that a file begins with; its value is the version.
