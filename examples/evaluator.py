@@ -584,8 +584,7 @@ def apart(one, other):
     one, other = (matrix_of(x) if np.shape(x) == (4,) else np.array(x, float) for x in (one, other))
     return float((abs(one - other) / np.maximum(1, abs(other))).max())
 def main():
-    if len(sys.argv) != 3:
-        raise SystemExit(__doc__)
+    assert len(sys.argv) == 3, __doc__
     model, record = (json.load(open(path, encoding="utf-8")) for path in sys.argv[1:])
     model, worst = Model(model), {"transforms": (0.0, 0, ""), "coordinates": (0.0, 0, "")}
     for number, pose in enumerate(record["poses"]):
@@ -597,6 +596,5 @@ def main():
     for what, (off, number, where) in worst.items():
         print(f"{len(record['poses'])} poses: {what} differ by {off:.1e} at most (number {number}, {where})")
     return 0 if max(off for off, *_ in worst.values()) <= 1e-12 else 1
-
 if __name__ == "__main__":
     sys.exit(main())

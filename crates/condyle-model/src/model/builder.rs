@@ -9,7 +9,7 @@ use super::{
 };
 use crate::component::{
     Ball, Combine, Compensate, Component, ConstantCurvature, Depend, Ellipsoid, Law, Map, Pivot,
-    Place, Product, Rotate, Signal, SurfaceAxis, Translate,
+    Place, Product, Rotate, Signal, SurfaceAxis, Translate, unit,
 };
 use crate::limit::Range;
 use condyle_diagnostics::{Error, Read, Severity};
@@ -375,10 +375,7 @@ impl ModelBuilder {
         };
         for component in &mut self.model.components {
             for (_, direction) in component.law.directions() {
-                // A direction of length 1 keeps its bits, so that a written model is read as it was.
-                if (direction.norm() - 1.0).abs() > 1e-15 {
-                    *direction = direction.normalized();
-                }
+                *direction = unit(*direction);
             }
         }
         let (mut stored, mut tangent) = (0u32, 0u32);
