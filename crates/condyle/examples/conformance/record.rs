@@ -19,7 +19,7 @@ const SPREADS: [f64; 8] = [0.6, 0.9, 1.0, 1.1, 1.3, 1.6, 2.0, 3.0];
 
 /// Requested numbers of a pose: the defaults for number 0, then ever farther from the middle of the
 /// ranges.
-pub fn request(model: &Model, number: usize) -> Vec<f64> {
+pub(crate) fn request(model: &Model, number: usize) -> Vec<f64> {
     let mut stored = model.defaults();
     if number == 0 {
         return stored;
@@ -53,7 +53,7 @@ pub fn request(model: &Model, number: usize) -> Vec<f64> {
 }
 
 /// A conformance file: `count` poses, each open and posed.
-pub fn record(model: &Model, count: usize) -> String {
+pub(crate) fn record(model: &Model, count: usize) -> String {
     let program = Program::compile(model);
     let mut pose = Pose::new(&program);
     let mut lines = vec![];
