@@ -64,3 +64,28 @@ fn models(folder: &Path) -> Result<Vec<String>, String> {
     names.sort();
     if names.is_empty() { Err(format!("{}: no model", folder.display())) } else { Ok(names) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn context() -> Context {
+        Context { root: cargo::root(), bless: false, trial: Some("unused".into()) }
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn an_evaluator_that_disagrees_fails_the_check() {
+        let folder = cargo::root().join("docs/exchange");
+        assert!(pair(&context(), &"false".into(), &folder, "conformance").is_err());
+        assert_eq!(pair(&context(), &"true".into(), &folder, "conformance"), Ok(()));
+    }
+
+    #[test]
+    fn every_shipped_model_is_compared_and_a_folder_without_any_is_an_error() {
+        let names = models(&cargo::root().join(MODELS)).unwrap();
+        assert!(names.contains(&"human".to_owned()) && names.len() >= 10, "{names:?}");
+        assert!(models(&cargo::root().join("docs/exchange/nothing")).is_err());
+        assert!(models(&cargo::root().join("docs/pictures")).is_err());
+    }
+}
