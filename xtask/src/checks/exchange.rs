@@ -31,7 +31,7 @@ pub(super) fn run(context: &Context) -> Outcome {
 fn compare(context: &Context, python: &OsString) -> Result<(), String> {
     let docs = context.root.join("docs/exchange");
     pair(context, python, &docs, "conformance")?;
-    let example = ["--release", "--package", "condyle", "--example", "conformance"];
+    let example = ["--package", "condyle", "--example", "conformance"];
     let programs = cargo::build(context, &example)?;
     let (_, program) = programs.first().ok_or("cargo named no program")?;
     let folder = context.root.join("target/exchange");
