@@ -154,18 +154,23 @@ fn idle(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
         if model.coordinate(id).follows.is_some() || moves[directions].iter().any(|&m| m) {
             continue;
         }
-        let key = subject.key(id);
-        let leads = model.coordinate_ids().any(|other| {
-            let follows = model.coordinate(other).follows;
+        let follows = |other: &CoordinateId| {
+            let follows = model.coordinate(*other).follows;
             follows.is_some_and(|source| subject.reach.leaders(source).contains(&id))
-        });
-        let also = if leads { ", and neither do those that follow it" } else { "" };
+        };
+        let followers: Vec<CoordinateId> = model.coordinate_ids().filter(follows).collect();
+        // What it drives outside the model, itself or by one that follows it, is its use.
+        if followers.iter().chain([&id]).any(|&one| model.coordinate(one).drives.is_some()) {
+            continue;
+        }
+        let key = subject.key(id);
+        let also = if !followers.is_empty() { ", and neither do those that follow it" } else { "" };
         findings.push(finding(
             Severity::Warning,
             "lint/moves-nothing",
             [Subject::Coordinate(key.clone())],
             format!("`{key}` moves no segment{also}"),
-            "let an axis of its joint use it, or remove it",
+            "let an axis of its joint use it, say with `drives` what it drives outside the model, or remove it",
         ));
     }
 }

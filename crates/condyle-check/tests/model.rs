@@ -208,6 +208,22 @@ fn coordinates_that_move_nothing() {
     assert_eq!(names(&finding), ["slack"]);
 }
 
+#[test]
+fn coordinates_that_drive_something_outside_the_model() {
+    let mut b = hinge(degrees(0.0, 90.0), 0.0);
+    let set = b.joint_set("face");
+    let smile = b.coordinate(set, "smile", CoordinateKind::Other);
+    b.coordinate_mut(smile).drives = Some("smile".into());
+    // One that moves nothing but a follower that drives something is of use as well.
+    let mood = b.coordinate(set, "mood", CoordinateKind::Other);
+    let brow = b.coordinate(set, "brow", CoordinateKind::Other);
+    let half = b.map(set, "half", mood, Function::linear(0.5, 0.0));
+    b.follow(brow, half);
+    b.coordinate_mut(brow).drives = Some("brow".into());
+    let findings = condyle_check::check(&b.build().unwrap(), &[]);
+    assert!(findings.is_empty(), "{findings:?}");
+}
+
 /// Three hinges in one joint, the middle one with a range in degrees.
 fn triple(axes: [Vec3; 3], middle: [f64; 2]) -> ModelBuilder {
     let mut b = ModelBuilder::new("hip");

@@ -7,11 +7,14 @@
 use crate::document::{self, Document, Kind, goals::GoalList, names::NameTable, setup::TrackSetup};
 #[cfg(feature = "opensim")]
 use crate::opensim::{self, setup};
-#[cfg(feature = "poses")]
-use crate::poses::{self, Poses};
 #[cfg(feature = "document")]
 use crate::text::utf8;
 use crate::{Error, Read, Recording, Table, csv, sto, trc};
+#[cfg(feature = "poses")]
+use crate::{
+    exchange,
+    poses::{self, Poses},
+};
 use condyle_model::Model;
 
 /// What a file may hold.
@@ -125,7 +128,7 @@ pub enum Id {
     Sto,
     /// Comma-separated tables.
     Csv,
-    /// Poses in JSON.
+    /// Poses and resolved models in JSON.
     Poses,
     /// Binary glTF.
     Glb,
@@ -240,12 +243,15 @@ pub const FORMATS: &[Format] = &[
     Format {
         id: Id::Poses,
         name: "json",
-        title: "poses by the names of coordinates",
+        title: "poses by the names of coordinates, and resolved models",
         endings: &["json"],
-        reads: &[ContentKind::Poses],
-        writes: &[],
+        reads: &[ContentKind::Poses, ContentKind::Model],
+        writes: &[ContentKind::Model],
         sniff: |bytes| starts(bytes, 1024).starts_with(['{', '[']),
-        read: |bytes, _| poses::read(bytes).map(|read| read.map(Content::Poses)),
+        read: |bytes, _| match exchange::is_model(bytes) {
+            true => exchange::read(bytes).map(|read| read.map(Content::Model)),
+            false => poses::read(bytes).map(|read| read.map(Content::Poses)),
+        },
     },
     #[cfg(feature = "glb")]
     Format {

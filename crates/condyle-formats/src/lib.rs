@@ -13,6 +13,7 @@
 //! | TRC marker recordings | [`trc::read`] | [`trc::write`] |
 //! | STO and MOT motions | [`sto::read`] | [`sto::write`] |
 //! | poses (JSON) | [`poses::read`] | |
+//! | resolved models (JSON) | [`exchange::read`] | [`exchange::write`] |
 //! | CSV tables | [`csv::read`] | [`csv::write`] |
 //! | OpenSim inverse kinematics setups | [`opensim::setup`] | |
 //! | GLB animated scenes | | [`glb::write`] |
@@ -22,6 +23,8 @@ pub mod csv;
 
 #[cfg(feature = "document")]
 pub mod document;
+#[cfg(feature = "poses")]
+pub mod exchange;
 mod format;
 #[cfg(feature = "glb")]
 pub mod glb;

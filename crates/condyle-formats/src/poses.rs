@@ -321,6 +321,18 @@ mod tests {
     }
 
     #[test]
+    fn numbers_are_read_to_the_last_bit() {
+        let model = model();
+        // The first two are read off by one unit in the last place where digits are summed up in f64.
+        for number in [-0.428_749_999_999_999_96, 1.832_595_714_594_046_1, 0.1, 1e-300] {
+            let mut stored = model.defaults();
+            stored[0] = number;
+            let again = read(write(&model, &stored).as_bytes()).unwrap().value;
+            assert_eq!(again.resolve(&model).unwrap().motion.frames[0][0], number);
+        }
+    }
+
+    #[test]
     fn texts_have_units() {
         for (value, radians) in [
             ("\"90 deg\"", std::f64::consts::FRAC_PI_2),

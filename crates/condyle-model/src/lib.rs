@@ -49,6 +49,6 @@ pub use component::{Component, Law, Signal};
 pub use evaluate::{Jacobian, Mode, Pose, Program, SizeMismatch};
 pub use limit::{Cone, ConeError, ConePoint, Legal, Projected, Projection, Range};
 pub use model::{
-    Closure, Coordinate, CoordinateId, CoordinateKind, JointSet, JointSetId, Marker, Model,
+    Closure, Coordinate, CoordinateId, CoordinateKind, Facing, JointSet, JointSetId, Marker, Model,
     ModelBuilder, PostureTerm, Segment, SegmentId, Shape, UpAxis,
 };

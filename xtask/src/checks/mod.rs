@@ -4,6 +4,7 @@ mod architecture;
 mod clippy;
 mod deny;
 mod doc;
+mod exchange;
 mod fmt;
 mod fuzz;
 mod instructions;
@@ -38,6 +39,11 @@ pub(crate) const CHECKS: &[Check] = &[
     Check { name: "clippy", what: "no warning in any target", run: clippy::run },
     Check { name: "doc", what: "the documentation builds without a warning", run: doc::run },
     Check { name: "test", what: "the README's test command", run: test::run },
+    Check {
+        name: "exchange",
+        what: "an independent evaluator agrees on every pose",
+        run: exchange::run,
+    },
     Check {
         name: "outside",
         what: "what a user builds: features, a program, the browser",

@@ -9,6 +9,7 @@ use crate::output;
 use crate::screen::say;
 use clap::{Args, ValueEnum};
 use condyle::formats::document::{self, Document};
+use condyle::formats::exchange;
 use condyle::formats::poses::Poses;
 use condyle::formats::{Content, ContentKind, Format, Id, trc};
 use condyle::open::{Cause, OpenError};
@@ -20,8 +21,8 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(crate) struct Convert {
-    /// A motion (.mot, .sto, .csv), poses (.json, as `fk` takes them), a model (.osim, .toml, or the
-    /// name of a shipped one) or a marker recording (.trc).
+    /// A motion (.mot, .sto, .csv), poses (.json, as `fk` takes them), a model (.osim, .toml, a
+    /// resolved one in .json, or the name of a shipped one) or a marker recording (.trc).
     input: PathBuf,
     /// Where to write; `-` is standard output and needs --to.
     output: PathBuf,
@@ -57,6 +58,11 @@ enum Curve {
     Spline,
 }
 
+/// Whether a format holds what moves.
+fn moves(format: &Format) -> bool {
+    !matches!(format.id, Id::Document | Id::Poses)
+}
+
 /// What can be written.
 const WRITTEN: [ContentKind; 4] =
     [ContentKind::Motion, ContentKind::Scene, ContentKind::Recording, ContentKind::Model];
@@ -64,7 +70,7 @@ const WRITTEN: [ContentKind; 4] =
 /// The supported conversions, for the message about any other.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
                      to .glb (an animation) or .trc (the model's markers), and poses (.json) to all \
-                     of these, with --rate as key poses; a model (.osim, .toml, or a shipped one by name) to .toml or .glb; \
+                     of these, with --rate as key poses; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved) or .glb; \
                      a recording (.trc) to .trc or .csv";
 
 impl Convert {
@@ -85,10 +91,15 @@ impl Convert {
             return Err(Failure::new(format!("{what}: --rate is for poses (.json) with times")));
         }
         let bytes = match content {
-            Content::Poses(poses) if target.id != Id::Document => {
+            Content::Model(model) | Content::Document(Document { model, .. })
+                if target.id == Id::Poses =>
+            {
+                exchange::write(&model).into_bytes()
+            }
+            Content::Poses(poses) if moves(target) => {
                 self.motion_as(Moving::Poses(poses), target)?
             }
-            Content::Table(table) if target.id != Id::Document => {
+            Content::Table(table) if moves(target) => {
                 self.motion_as(Moving::Table(table), target)?
             }
             Content::Document(document) if target.id == Id::Document => {

@@ -21,6 +21,29 @@ fn gltf(bytes: &[u8]) -> Value {
 }
 
 #[test]
+fn a_resolved_model_is_a_model() {
+    let folder = Folder::with_leg("convert-resolved");
+    folder.condyle(&["convert", "leg.osim", "leg.json"]).expect(0);
+    assert!(folder.read("leg.json").starts_with("{\n\"condyle_model\": 1,\n"));
+    // Written again it is the same to the byte, and it poses as what it was made from.
+    folder.condyle(&["convert", "leg.json", "again.json"]).expect(0);
+    assert_eq!(folder.read("leg.json"), folder.read("again.json"));
+    folder.write("p.json", r#"{"knee_angle": 0.7, "hip_flexion": -0.3}"#);
+    let frames = ["leg.osim", "leg.json"]
+        .map(|model| folder.condyle(&["fk", model, "--pose", "p.json"]).expect(0));
+    assert_eq!(frames[0], frames[1]);
+    let info: Value =
+        serde_json::from_str(&folder.condyle(&["info", "leg.json", "--json"]).expect(0))
+            .expect("JSON");
+    assert_eq!((&info["kind"], &info["facing"]), (&"model".into(), &"+x".into()));
+    // Poses are JSON, too, and no model; a model is no motion.
+    let run = folder.condyle(&["fk", "p.json"]);
+    assert!(run.err.contains("the file holds poses, not a model"), "{}", run.err);
+    let run = folder.condyle(&["convert", "p.json", "q.json", "--model", "leg.osim"]);
+    assert!(run.err.contains("cannot be converted to .json"), "{}", run.err);
+}
+
+#[test]
 fn with_a_model_a_motion_is_completed() {
     let folder = Folder::with_leg("convert-model");
     folder.write("m.mot", leg::mot(5));

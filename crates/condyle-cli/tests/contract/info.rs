@@ -27,6 +27,7 @@ fn a_model_for_programs() {
     let hip = json!({
         "key": "hip_flexion", "name": "hip_flexion", "joint_set": "hip", "kind": "rotation",
         "default": 0.0, "range": [-1.5, 2.0], "typical": null, "clamped": true, "circle": false, "locked": false,
+        "drives": null,
         "follows": [],
     });
     assert_eq!(info["coordinates"][0], hip);
@@ -34,7 +35,7 @@ fn a_model_for_programs() {
     let slide = json!({
         "key": "knee_slide", "name": "knee_slide", "joint_set": "knee", "kind": "translation",
         "default": 0.0, "range": [null, null], "typical": null, "clamped": false, "circle": false,
-        "locked": false, "follows": ["knee_angle"],
+        "locked": false, "drives": null, "follows": ["knee_angle"],
     });
     assert_eq!(info["coordinates"][2], slide);
     assert_eq!(info["coordinates"][3]["locked"], true);

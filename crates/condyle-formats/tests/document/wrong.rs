@@ -100,6 +100,23 @@ fn ports_are_checked_by_type_and_name() {
 }
 
 #[test]
+fn a_model_faces_along_an_axis() {
+    let text = "condyle = 1\nkind = \"model\"\nfacing = \"-z\"\n[segment.head]\n[joint_set.face.coordinate.smile]\nkind = \"other\"\ndrives = \"mouth smile\"\n";
+    let model = super::read(text);
+    assert_eq!(model.facing().name(), "-z");
+    assert_eq!(model.coordinates()[0].drives.as_deref(), Some("mouth smile"));
+    let again = super::read(&condyle_formats::document::write(&model));
+    assert_eq!((again.facing(), again.coordinates()), (model.facing(), model.coordinates()));
+    let wrong = text.replace("-z", "forward");
+    let error = condyle_formats::document::read(&wrong, &mut |_| Err("alone".into())).unwrap_err();
+    assert_eq!(
+        error[0].to_string(),
+        "line 3, column 10: unknown direction `forward` (give the axis along which the character looks: \
+         \"+x\", \"-x\", \"+z\" or \"-z\")"
+    );
+}
+
+#[test]
 fn the_head_says_what_a_document_is() {
     let one = |text: &str| try_read(text).unwrap_err()[0].to_string();
     assert!(one("").contains("begin with the lines `condyle = 1`"));

@@ -29,7 +29,7 @@ use super::{Contract, Fault, Geometry, Kind, Mirrored, Port, PortType, Reflectio
 use crate::limit::{Cone, ConePoint, Limit, MOST_ROWS, Row};
 use condyle_diagnostics::Severity;
 use condyle_math::{Mat3, Quat, Scalar, Vec3};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// A ball joint limited by a cone.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,7 +108,6 @@ impl JointCone {
         let lead = b.dot(a.cross(c)).atan2(a.dot(c));
         let (along, up, side) = (w.dot(a), w.dot(b), w.dot(beside));
         let sine = up.hypot(side);
-        let near = |angle: f64, asked: f64| angle - ((angle - asked) / TAU).round() * TAU;
         let solve = |sign: f64| {
             // If w is along the first axis, that angle is undetermined (gimbal lock): the requested
             // one is kept.
@@ -136,6 +135,24 @@ impl JointCone {
         let ((far, found), (other_far, other)) = (solve(1.0), solve(-1.0));
         if other_far < far { other } else { found }
     }
+}
+
+/// Two angles whose distances differ by less than this are equally near.
+const ALIKE: f64 = 1e-9;
+
+/// The angle plus the whole turns that bring it nearest to what was asked.
+///
+/// Half a turn away there are two: that nearer to 0 is taken, of ±π the positive one. That is no rare
+/// case: where angles asked for beyond gimbal lock give a legal direction with an illegal twist, the
+/// legal ones on the other side differ from them by exactly half a turn, and rounding must not decide.
+fn near(angle: f64, asked: f64) -> f64 {
+    let near = angle - ((angle - asked) / TAU).round() * TAU;
+    if (near - asked).abs() < PI - ALIKE {
+        return near;
+    }
+    let other = near - TAU.copysign(near - asked);
+    let closer = near.abs() - other.abs();
+    if closer > ALIKE || (closer > -ALIKE && other > near) { other } else { near }
 }
 
 impl JointCone {
@@ -365,6 +382,29 @@ mod tests {
         // 24-gon.
         let [first, second, ..] = limit.legal(&[1.5, 0.0, 0.0]).unwrap();
         assert!((0.69..=0.7).contains(&first) && second.abs() < 1e-9, "{first} {second}");
+    }
+
+    #[test]
+    fn rounding_does_not_choose_between_angles_half_a_turn_away() {
+        let limit = JointCone {
+            of: Swinging::Angles([Vec3::Z, -Vec3::X, Vec3::Y]),
+            cone: cone(2.9, Some([-0.5, 0.4])),
+        };
+        // The second angle is beyond gimbal lock and the twist illegal: the first angle has to change by
+        // half a turn, to that nearer to 0.
+        let asked = [0.5, 2.1, -1.5];
+        let expected = limit.legal(&asked).expect("its twist is illegal");
+        assert!((expected[0] - (asked[0] - PI)).abs() < 1e-9, "{expected:?}");
+        for i in 0..200 {
+            let moved = [0.7, 1.3, 2.1].map(|k| (f64::from(i) * k).sin() * 1e-14);
+            let asked = std::array::from_fn::<f64, 3, _>(|k| asked[k] + moved[k]);
+            let found = limit.legal(&asked).expect("its twist is illegal");
+            for (found, expected) in found.iter().zip(expected) {
+                assert!((found - expected).abs() < 1e-9, "{asked:?} {found} {expected}");
+            }
+        }
+        // 0 and half a turn: the positive one of ±π.
+        assert_eq!((near(-PI, 0.0), near(PI, 0.0), near(0.1, 6.3)), (PI, PI, 0.1 + TAU));
     }
 
     #[test]

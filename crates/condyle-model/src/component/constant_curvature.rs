@@ -9,7 +9,7 @@
 //! ```
 //!
 //! For s below 0.001 or above 0.999 a straight rod p = L·t is used instead, for agreement with
-//! OpenSim. The discontinuity at s = 0.999 is that of OpenSim.
+//! OpenSim. The discontinuities, at s = 0.001 by 0.0005·L to the side and at s = 0.999, are OpenSim's.
 
 use super::{Contract, Geometry, Kind, Mirrored, MotionLaw, Port, PortType, Reflection};
 use condyle_math::{Affine, Mat3, Scalar, Vec3};

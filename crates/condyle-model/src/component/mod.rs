@@ -420,6 +420,11 @@ impl Law {
     }
 }
 
+/// A direction with length 1. One that has it keeps its bits, so that a written model is read as it was.
+pub(crate) fn unit(direction: Vec3) -> Vec3 {
+    if (direction.norm() - 1.0).abs() > 1e-15 { direction.normalized() } else { direction }
+}
+
 /// A fault of a law's parameters: its severity and code, what is said of the component, what would be right.
 pub(crate) struct Fault {
     pub severity: Severity,

@@ -121,7 +121,7 @@ impl Pivot {
                 }
             }
         };
-        let mut pivot = Self { axis: axis.normalized(), centre, ends: vec![], pieces: vec![] };
+        let mut pivot = Self { axis: super::unit(axis), centre, ends: vec![], pieces: vec![] };
         // Integrate from 0 outwards: each piece begins with the position at the end of the previous
         // one. The side below 0 is processed with negated ends.
         let mut sides = [vec![], vec![]];

@@ -4,12 +4,12 @@ use super::check;
 use super::posture;
 use super::scaling;
 use super::{
-    Closure, ComponentId, Coordinate, CoordinateId, CoordinateKind, JointSet, JointSetId, Marker,
-    Model, PostureTerm, Segment, SegmentId, Shape, SizeGroup, UpAxis,
+    Closure, ComponentId, Coordinate, CoordinateId, CoordinateKind, Facing, JointSet, JointSetId,
+    Marker, Model, PostureTerm, Segment, SegmentId, Shape, SizeGroup, UpAxis,
 };
 use crate::component::{
     Ball, Combine, Compensate, Component, ConstantCurvature, Depend, Ellipsoid, Law, Map, Pivot,
-    Place, Product, Rotate, Signal, SurfaceAxis, Translate,
+    Place, Product, Rotate, Signal, SurfaceAxis, Translate, unit,
 };
 use crate::limit::Range;
 use condyle_diagnostics::{Error, Read, Severity};
@@ -32,6 +32,7 @@ impl ModelBuilder {
             model: Model {
                 name: name.to_owned(),
                 up: UpAxis::Y,
+                facing: Facing::PlusX,
                 segments: vec![],
                 coordinates: vec![],
                 joint_sets: vec![],
@@ -50,6 +51,11 @@ impl ModelBuilder {
     /// Sets the axis of the world that points up.
     pub fn up(&mut self, up: UpAxis) {
         self.model.up = up;
+    }
+
+    /// Sets the axis of the world along which the character looks at rest; +x where it is not set.
+    pub fn facing(&mut self, facing: Facing) {
+        self.model.facing = facing;
     }
 
     /// A segment, welded to its parent (or to the world) at its own origin until that is changed.
@@ -113,6 +119,7 @@ impl ModelBuilder {
             typical: None,
             locked: false,
             follows: None,
+            drives: None,
             source: None,
         });
         CoordinateId(self.model.coordinates.len() as u32 - 1)
@@ -368,10 +375,7 @@ impl ModelBuilder {
         };
         for component in &mut self.model.components {
             for (_, direction) in component.law.directions() {
-                // A direction of length 1 keeps its bits, so that a written model is read as it was.
-                if (direction.norm() - 1.0).abs() > 1e-15 {
-                    *direction = direction.normalized();
-                }
+                *direction = unit(*direction);
             }
         }
         let (mut stored, mut tangent) = (0u32, 0u32);

@@ -71,6 +71,8 @@ pub struct Coordinate {
     pub locked: bool,
     /// What determines it, if it is coupled to others; requests for it are then ignored.
     pub follows: Option<Signal>,
+    /// What it drives outside the model, such as a morph or a muscle, where it moves nothing itself.
+    pub drives: Option<String>,
     /// Where its numbers come from.
     pub source: Option<String>,
 }

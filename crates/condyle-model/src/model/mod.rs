@@ -41,6 +41,58 @@ pub enum UpAxis {
     Z,
 }
 
+/// The axis of the world along which the character looks at rest.
+///
+/// It changes no pose: programs that exchange characters turn them by it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Facing {
+    /// Along the first axis, as in OpenSim.
+    #[default]
+    PlusX,
+    /// Against the first axis.
+    MinusX,
+    /// Along the third axis, as in glTF.
+    PlusZ,
+    /// Against the third axis, as in VRM 0.
+    MinusZ,
+}
+
+impl Facing {
+    /// All directions.
+    pub const ALL: [Self; 4] = [Self::PlusX, Self::MinusX, Self::PlusZ, Self::MinusZ];
+
+    /// The word for it in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::PlusX => "+x",
+            Self::MinusX => "-x",
+            Self::PlusZ => "+z",
+            Self::MinusZ => "-z",
+        }
+    }
+
+    /// The direction of that name.
+    ///
+    /// ```
+    /// use condyle_model::model::Facing;
+    /// assert_eq!(Facing::named("-z"), Some(Facing::MinusZ));
+    /// assert_eq!(Facing::named("z"), None);
+    /// ```
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|facing| facing.name() == name)
+    }
+
+    /// The direction as a vector of length 1.
+    pub fn direction(self) -> Vec3 {
+        match self {
+            Self::PlusX => Vec3::X,
+            Self::MinusX => -Vec3::X,
+            Self::PlusZ => Vec3::Z,
+            Self::MinusZ => -Vec3::Z,
+        }
+    }
+}
+
 /// A few coordinates and the network of components that computes motions from them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointSet {
@@ -66,6 +118,7 @@ pub struct Marker {
 pub struct Model {
     pub(crate) name: String,
     pub(crate) up: UpAxis,
+    pub(crate) facing: Facing,
     pub(crate) segments: Vec<Segment>,
     pub(crate) coordinates: Vec<Coordinate>,
     pub(crate) joint_sets: Vec<JointSet>,
@@ -90,6 +143,11 @@ impl Model {
     /// The axis of the world that points up.
     pub fn up(&self) -> UpAxis {
         self.up
+    }
+
+    /// The axis of the world along which the character looks at rest.
+    pub fn facing(&self) -> Facing {
+        self.facing
     }
 
     /// All segments, in the order in which they were made.
@@ -299,6 +357,19 @@ impl Model {
             .filter_map(|segment| self.segment(segment).motion)
             .chain(component.values())
             .collect()
+    }
+
+    /// The order of evaluation: coordinates that follow others, and components by their first outputs,
+    /// each after all that it reads.
+    pub fn evaluation_order(&self) -> Vec<Signal> {
+        let order = dependency_order(self).unwrap_or_default();
+        let signal = |node: Node| match node {
+            Node::Coordinate(id) => {
+                self.coordinate(id).follows.is_some().then_some(Signal::Coordinate(id))
+            }
+            Node::Component(id) => Some(Signal::Output(id, 0)),
+        };
+        order.into_iter().filter_map(signal).collect()
     }
 
     /// The components that nothing uses: no segment, coordinate or limit depends on them. A limit on what is

@@ -5,7 +5,7 @@ use crate::output::{columns, wrapped};
 use condyle::check::circles;
 use condyle::model::PostureTerm;
 use condyle::model::component::Signal;
-use condyle::model::model::Condition;
+use condyle::model::model::{Condition, Facing};
 use condyle::model::{Closure, UpAxis};
 use condyle::{CoordinateId, CoordinateKind, Model, SegmentId};
 use serde_json::{Value, json};
@@ -44,6 +44,7 @@ pub(super) fn to_json(model: &Model) -> Value {
                 "typical": coordinate.typical,
                 "circle": circles.contains(&id),
                 "locked": coordinate.locked,
+                "drives": coordinate.drives,
                 "follows": leader_keys(model, id, &keys),
             })
         })
@@ -80,6 +81,7 @@ pub(super) fn to_json(model: &Model) -> Value {
         "kind": "model",
         "name": model.name(),
         "up": up(model),
+        "facing": model.facing().name(),
         "segments": segments,
         "joint_sets": model.joint_sets().iter().map(|set| &set.name).collect::<Vec<_>>(),
         "coordinates": coordinates,
@@ -163,10 +165,14 @@ fn closure_json(model: &Model, closure: &Closure, keys: &[String]) -> Value {
 pub(super) fn to_text(model: &Model) -> String {
     let free = model.coordinates().iter().filter(|c| c.follows.is_none() && !c.locked);
     let mut text = format!(
-        "model `{}`, {} up\n{} segments, {} joint sets, {} coordinates ({} of them free), {} loops, \
+        "model `{}`, {} up{}\n{} segments, {} joint sets, {} coordinates ({} of them free), {} loops, \
          {} markers\n",
         model.name(),
         up(model),
+        match model.facing() {
+            Facing::PlusX => String::new(),
+            other => format!(", facing {}", other.name()),
+        },
         model.segments().len(),
         model.joint_sets().len(),
         model.coordinates().len(),
@@ -271,6 +277,9 @@ fn coordinate_rows(model: &Model) -> Vec<Vec<String>> {
             }
             if coordinate.locked {
                 marks.push("locked".to_owned());
+            }
+            if let Some(drives) = &coordinate.drives {
+                marks.push(format!("drives {drives}"));
             }
             if coordinate.follows.is_some() {
                 let leaders = leader_keys(model, id, &keys);

@@ -4,6 +4,7 @@ use crate::document::texts::{Name, Spot};
 use condyle_math::function::Function;
 use condyle_math::{Affine, Vec3};
 use condyle_mesh::{Finish, Form};
+use condyle_model::model::Facing;
 use condyle_model::{CoordinateKind, Law, Range, UpAxis};
 use std::collections::HashSet;
 
@@ -11,6 +12,7 @@ use std::collections::HashSet;
 pub(super) struct Draft {
     pub(super) name: Option<String>,
     pub(super) up: UpAxis,
+    pub(super) facing: Facing,
     pub(super) segments: Vec<SegmentDraft>,
     pub(super) sets: Vec<Name>,
     /// Those of them that are plain joints.
@@ -46,6 +48,7 @@ pub(super) struct CoordinateDraft {
     pub(super) range: Range,
     pub(super) typical: Option<[f64; 2]>,
     pub(super) locked: bool,
+    pub(super) drives: Option<String>,
     pub(super) source: Option<String>,
     pub(super) follows: Option<Name>,
     /// Its value at rest and its stiffness, if it has one.
@@ -66,6 +69,7 @@ impl CoordinateDraft {
             range,
             typical: None,
             locked: false,
+            drives: None,
             source: None,
             follows: None,
             held: None,

@@ -9,6 +9,7 @@ use condyle_model::Law;
 /// The keys at the top of a document, beside those of its head.
 pub(super) const TOP: &[&str] = &[
     "up",
+    "facing",
     "mirror",
     "segment",
     "joint",
@@ -81,6 +82,7 @@ pub(super) const COORDINATE: &[&str] = &[
     "typical",
     "enforced",
     "locked",
+    "drives",
     "unit",
     "source",
     "follows",

@@ -1,12 +1,12 @@
 //! Documents of kind `model`: segments, joints, and markers.
 //!
 //! ```text
-//! document   = the head of every document, up = "y"|"z", mirror, and the tables below
+//! document   = the head of every document, up = "y"|"z", facing = "+x"|"-x"|"+z"|"-z", mirror, and the tables below
 //! segment.S  = parent, at, turn, order, matrix (the joint in the parent),
 //!              joint_at, joint_turn, joint_order, joint_matrix (the joint in the segment)
 //! joint.J    = segment, type and the keys of that type, coordinates, coordinate.C
-//! joint_set.J.coordinate.C   = kind, default, range, enforced, locked, unit, source, follows,
-//!                              rest, stiffness
+//! joint_set.J.coordinate.C   = kind, default, range, enforced, locked, drives, unit, source,
+//!                              follows, rest, stiffness
 //! joint_set.J.component.K.X  = the inputs and parameters of a component of kind X
 //! joint_set.J.output         = SEGMENT = "K", or a list of factors
 //! marker.M   = segment, at
@@ -45,7 +45,7 @@ use condyle_model::component::Registry;
 use std::collections::HashMap;
 
 const FORM: Form =
-    Form { kind: Kind::Model, keys: keys::TOP, own: &["up"], repeated: keys::REPEATED };
+    Form { kind: Kind::Model, keys: keys::TOP, own: &["up", "facing"], repeated: keys::REPEATED };
 
 /// A model document: the model, and the text that describes it.
 #[derive(Clone, Debug, PartialEq)]

@@ -150,6 +150,7 @@ struct Resolver<'s> {
 impl Resolver<'_> {
     fn all(&mut self, draft: Draft) {
         self.builder.up(draft.up);
+        self.builder.facing(draft.facing);
         self.broken = draft.broken;
         for s in &draft.segments {
             let id = self.builder.segment(&s.name.text, None);
@@ -180,6 +181,7 @@ impl Resolver<'_> {
             let made = self.builder.coordinate_mut(id);
             (made.default, made.range, made.locked) = (c.default, c.range, c.locked);
             made.typical = c.typical;
+            made.drives.clone_from(&c.drives);
             made.source.clone_from(&c.source);
             let key = format!("{}/{}", c.set, c.name.text);
             for key in [c.name.text.clone(), key] {

@@ -256,7 +256,7 @@ impl Gliding {
             return Err(ContactError::EqualPlaces(i, j));
         }
         let per_radius = Vec3::new(1.0 / radii.x, 1.0 / radii.y, 1.0 / radii.z);
-        let axis = axis * (1.0 / length);
+        let axis = super::unit(axis);
         Ok(Self { ellipsoid_in_surface, radii, per_radius, axis, pairs, places })
     }
 

@@ -77,6 +77,8 @@ impl ModelReader<'_> {
         let held = coordinate.range.lower.is_some() || coordinate.range.upper.is_some();
         coordinate.range.enforced = self.flag(fields.get("enforced"), "enforced", held);
         coordinate.locked = self.flag(fields.get("locked"), "locked", false);
+        coordinate.drives =
+            fields.get("drives").and_then(|n| self.text(n, "drives")).map(|n| n.text);
         coordinate.source =
             fields.get("source").and_then(|n| self.text(n, "source")).map(|n| n.text);
         coordinate.held = self.rest(&fields, unit, coordinate.default[0]);

@@ -21,6 +21,7 @@ use crate::document::model::keys;
 use crate::document::model::mirror::Mirror;
 use crate::document::tree::{Entry, Node};
 use condyle_model::component::{Reflection, Registry};
+use condyle_model::model::Facing;
 use condyle_model::{CoordinateKind, UpAxis};
 use std::ops::{Deref, DerefMut};
 
@@ -59,6 +60,17 @@ impl ModelReader<'_> {
                 self.texts.error(up.spot, "model/up", message, "give \"y\" or \"z\"");
             }
             _ => {}
+        }
+        if let Some(facing) = top.get("facing").and_then(|n| self.text(n, "facing")) {
+            match Facing::named(&facing.text) {
+                Some(found) => draft.facing = found,
+                None => {
+                    let message = format!("unknown direction `{}`", facing.text);
+                    let help = "give the axis along which the character looks: \"+x\", \"-x\", \
+                                \"+z\" or \"-z\"";
+                    self.texts.error(facing.spot, "model/facing", message, help);
+                }
+            }
         }
         for &family in keys::REPEATED {
             let Some(node) = top.get(family) else { continue };

@@ -6,7 +6,7 @@ mod surface;
 use super::mirror::escaped;
 use condyle_math::function::{Curve, Function, FunctionOfSeveral};
 use condyle_math::{Affine, EulerOrder, Mat3, Vec3};
-use condyle_model::model::Condition;
+use condyle_model::model::{Condition, Facing};
 use condyle_model::{
     Coordinate, CoordinateId, CoordinateKind, Model, PostureTerm, Range, Segment, SegmentId,
     Signal, UpAxis,
@@ -63,6 +63,9 @@ impl Writer<'_> {
         line!(self, "name = {}", text(model.name()));
         if model.up() == UpAxis::Z {
             line!(self, "up = \"z\"");
+        }
+        if model.facing() != Facing::default() {
+            line!(self, "facing = \"{}\"", model.facing().name());
         }
         for segment in model.segments() {
             self.segment(segment);
@@ -200,6 +203,9 @@ impl Writer<'_> {
         }
         if c.locked {
             line!(self, "locked = true");
+        }
+        if let Some(drives) = &c.drives {
+            line!(self, "drives = {}", text(drives));
         }
         if let Some(source) = &c.source {
             line!(self, "source = {}", text(source));

@@ -1,0 +1,197 @@
+//! Components: their laws from kind and parameters.
+
+use super::value::At;
+use crate::Error;
+use crate::exchange::AXES;
+use condyle_math::{EulerOrder, Vec3};
+use condyle_model::Law;
+use condyle_model::component::{
+    Along, AngleNames, Angles, Ball, Centre, Combine, Compensate, ConstantCurvature, Contact,
+    ContactPair, Curve, Depend, Ellipse, Ellipsoid, Gliding, HalfSpace, Heading, JointCone, Map,
+    Parameters, Pivot, Place, Product, Reflection, Registry, RelativeOrientation, RelativePosition,
+    Rotate, Scale, Shear, SurfaceAxis, Swinging, Translate,
+};
+use condyle_model::limit::{Cone, ConePoint, Projection};
+
+/// The law of a component.
+pub(super) fn law(at: &At<'_>, laws: &Registry) -> Result<Law, Error> {
+    let (kind, p, inputs) = (at.key("kind")?, at.key("parameters")?, at.key("inputs")?);
+    let sides = ["lower", "upper"].map(|side| p.perhaps(side).map(|f| f.function()).transpose());
+    Ok(match kind.text()? {
+        "map" => {
+            let functions = p.key("functions")?.list()?;
+            Law::Map(Map {
+                functions: functions.iter().map(At::function).collect::<Result<_, _>>()?,
+            })
+        }
+        "combine" => Law::Combine(Combine { function: p.key("function")?.function_of_several()? }),
+        "depend" => {
+            let [lower, upper] = sides;
+            Law::Depend(Depend { lower: lower?, upper: upper? })
+        }
+        "relative_orientation" => {
+            let reference = inputs.perhaps("reference").is_some();
+            Law::RelativeOrientation(RelativeOrientation { reference })
+        }
+        "relative_position" => Law::RelativePosition(RelativePosition {
+            reference: inputs.perhaps("reference").is_some(),
+            point: p.key("point")?.vector()?,
+            along: p.key("along")?.vectors()?,
+        }),
+        "angles" => angles(&p)?,
+        "cone" => cone(&p)?,
+        "ellipse" => {
+            let [centre, half_axes] = [p.key("centre")?.some()?, p.key("half_axes")?.some()?];
+            let ellipse = Ellipse::new(centre, half_axes, p.key("tilt")?.number()?);
+            Law::Ellipse(ellipse.map_err(|error| p.error(error, "correct it"))?)
+        }
+        "half_space" => {
+            let half = HalfSpace::new(p.key("normal")?.numbers()?, p.key("bound")?.number()?);
+            Law::HalfSpace(half.map_err(|error| p.error(error, "correct it"))?)
+        }
+        "contact" => contact(&p, &inputs)?,
+        "rotate" => Law::Rotate(Rotate { axis: p.key("axis")?.vector()? }),
+        "translate" => Law::Translate(Translate { axis: p.key("axis")?.vector()? }),
+        "pivot" => pivot(&p)?,
+        "ball" => Law::Ball(Ball),
+        "product" => Law::Product(Product),
+        "place" => Law::Place(Place { child_in_parent: p.key("child_in_parent")?.frame()? }),
+        "ellipsoid" => {
+            let words = [("opensim", SurfaceAxis::OpenSim), ("normal", SurfaceAxis::Normal)];
+            let axis = p.key("surface_axis")?.word(&words)?;
+            Law::Ellipsoid(Ellipsoid { radii: p.key("radii")?.vector()?, axis })
+        }
+        "constant_curvature" => Law::ConstantCurvature(ConstantCurvature {
+            neutral: p.key("neutral")?.some()?,
+            length: p.key("length")?.number()?,
+        }),
+        "compensate" => Law::Compensate(Compensate { weight: p.key("weight")?.number()? }),
+        "scale" => {
+            let axis = || p.key("axis")?.vector();
+            let along = match p.key("along")?.text()? {
+                "everywhere" => Along::Everywhere,
+                "axis" => Along::Axis(axis()?),
+                "volume" => Along::Volume(axis()?),
+                other => return Err(p.unknown(other, ["everywhere", "axis", "volume"].into_iter())),
+            };
+            Law::Scale(Scale { along })
+        }
+        "shear" => Law::Shear(Shear {
+            along: p.key("along")?.vector()?,
+            across: p.key("across")?.vector()?,
+        }),
+        "curve" => {
+            let heading = match p.perhaps("heading") {
+                None => None,
+                Some(h) => Some(Heading {
+                    forward: h.key("forward")?.vector()?,
+                    up: h.key("up")?.vector()?,
+                }),
+            };
+            Law::Curve(Curve { path: p.key("path")?.path()?, heading })
+        }
+        "custom" => {
+            let given = p.key("parameters")?;
+            let mut parameters = Parameters::new();
+            for key in given.keys() {
+                parameters.insert(key.to_owned(), given.key(key)?.numbers()?);
+            }
+            let law = laws.make(p.key("law")?.text()?, parameters);
+            Law::Custom(law.map_err(|why| p.error(why, "register it, or leave it out"))?)
+        }
+        other => return Err(kind.unknown(other, Law::KINDS.iter().map(|kind| kind.name))),
+    })
+}
+
+/// The number of an axis.
+fn axis(at: &At<'_>) -> Result<usize, Error> {
+    at.word(&[(AXES[0], 0), (AXES[1], 1), (AXES[2], 2)])
+}
+
+fn angles(p: &At<'_>) -> Result<Law, Error> {
+    let kind = p.key("angles")?;
+    let names = match kind.text()? {
+        "euler" => {
+            let order = p.key("order")?;
+            let orders = EulerOrder::ALL.map(|order| order.to_string());
+            let words: Vec<_> = orders.iter().map(String::as_str).zip(EulerOrder::ALL).collect();
+            AngleNames::Euler(order.word(&words)?)
+        }
+        "swing_twist" => AngleNames::SwingTwist(axis(&p.key("axis")?)?),
+        other => return Err(kind.unknown(other, ["euler", "swing_twist"].into_iter())),
+    };
+    let mirrored = match p.perhaps("mirrored") {
+        Some(at) => Reflection::new(axis(&at)?),
+        None => None,
+    };
+    Ok(Law::Angles(Angles { names, mirrored }))
+}
+
+fn cone(p: &At<'_>) -> Result<Law, Error> {
+    let (kind, axes) = (p.key("of")?, p.key("axes")?);
+    let wrong = |count: &str| axes.error(format!("there are not {count} axes"), "give them");
+    let of = match kind.text()? {
+        "angles" => {
+            Swinging::Angles(axes.vectors()?.try_into().map_err(|_: Vec<Vec3>| wrong("three"))?)
+        }
+        "directions" => {
+            Swinging::Directions(axes.vectors()?.try_into().map_err(|_: Vec<Vec3>| wrong("two"))?)
+        }
+        "orientation" => Swinging::Orientation,
+        other => {
+            return Err(kind.unknown(other, ["angles", "directions", "orientation"].into_iter()));
+        }
+    };
+    let mut points = vec![];
+    for point in p.key("points")?.list()? {
+        let twist = point.perhaps("twist").map(|twist| twist.some()).transpose()?;
+        points.push(ConePoint { direction: point.key("direction")?.vector()?, twist });
+    }
+    let words = [("nearest", Projection::Nearest), ("toward_rest", Projection::TowardRest)];
+    let cone = Cone::new(
+        p.key("rest")?.vector()?,
+        p.perhaps("twist_at_rest").map(|twist| twist.some()).transpose()?,
+        points,
+        p.key("subdivisions")?.count()?,
+        p.key("projection")?.word(&words)?,
+    );
+    let cone = cone.map_err(|error| p.error(error, "correct it"))?;
+    Ok(Law::Cone(JointCone { of, cone }))
+}
+
+fn contact(p: &At<'_>, inputs: &At<'_>) -> Result<Law, Error> {
+    let mut pairs = vec![];
+    for pair in p.key("pairs")?.list()? {
+        pairs.push(ContactPair {
+            first: pair.key("first")?.vector()?,
+            second: pair.key("second")?.vector()?,
+            at: pair.key("at")?.some()?,
+        });
+    }
+    let place = p.key("ellipsoid_in_surface")?.frame()?;
+    let law = Gliding::new(place, p.key("radii")?.vector()?, p.key("axis")?.vector()?, pairs);
+    Ok(Law::Contact(Contact {
+        before: inputs.perhaps("before").is_some(),
+        most_gap: p.perhaps("most_gap").map(|gap| gap.number()).transpose()?,
+        law: law.map_err(|error| p.error(error, "correct it"))?,
+    }))
+}
+
+fn pivot(p: &At<'_>) -> Result<Law, Error> {
+    let given = p.key("centre")?;
+    let kind = given.key("kind")?;
+    let centre = match kind.text()? {
+        "intervals" => {
+            let mut intervals = vec![];
+            for one in given.key("intervals")?.list()? {
+                let to = one.perhaps("to").map_or(Ok(f64::INFINITY), |to| to.number())?;
+                intervals.push((to, one.key("at")?.vector()?));
+            }
+            Centre::Intervals(intervals)
+        }
+        "path" => Centre::Path(given.key("path")?.path()?),
+        other => return Err(kind.unknown(other, ["intervals", "path"].into_iter())),
+    };
+    let pivot = Pivot::new(p.key("axis")?.vector()?, centre);
+    Ok(Law::Pivot(pivot.map_err(|error| p.error(error, "correct it"))?))
+}

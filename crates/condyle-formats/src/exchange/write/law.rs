@@ -1,0 +1,138 @@
+//! The parameters of components.
+
+use super::{frame, function, function_of_several, spline, vector};
+use crate::exchange::AXES;
+use condyle_math::Vec3;
+use condyle_math::function::SimmSpline;
+use condyle_model::Law;
+use condyle_model::component::{
+    Along, AngleNames, Angles, Ball, Centre, Combine, Compensate, ConstantCurvature, Contact,
+    ContactPair, Curve, Depend, Ellipsoid, Gliding, Heading, JointCone, Map, Place, Product,
+    RelativeOrientation, RelativePosition, Rotate, Scale, Shear, SurfaceAxis, Swinging, Translate,
+};
+use condyle_model::limit::{ConePoint, Projection};
+use serde_json::{Value, json};
+
+/// The parameters of a component, beside what is at its ports.
+pub(super) fn parameters(law: &Law) -> Value {
+    match law {
+        Law::Map(Map { functions }) => {
+            json!({ "functions": functions.iter().map(function).collect::<Value>() })
+        }
+        Law::Combine(Combine { function }) => json!({ "function": function_of_several(function) }),
+        Law::Depend(Depend { lower, upper }) => {
+            json!({ "lower": lower.as_ref().map(function), "upper": upper.as_ref().map(function) })
+        }
+        Law::RelativeOrientation(RelativeOrientation { reference: _ }) => json!({}),
+        Law::RelativePosition(RelativePosition { reference: _, point, along }) => {
+            json!({ "point": vector(*point), "along": vectors(along) })
+        }
+        Law::Angles(Angles { names, mirrored }) => {
+            let mirrored = mirrored.map(|at| AXES[at.axis() % 3]);
+            match names {
+                AngleNames::Euler(order) => json!({
+                    "angles": "euler",
+                    "order": order.to_string(),
+                    "mirrored": mirrored,
+                }),
+                AngleNames::SwingTwist(axis) => json!({
+                    "angles": "swing_twist",
+                    "axis": AXES[axis % 3],
+                    "mirrored": mirrored,
+                }),
+            }
+        }
+        Law::Cone(law) => cone(law),
+        Law::Ellipse(ellipse) => json!({
+            "centre": ellipse.centre(),
+            "half_axes": ellipse.half_axes(),
+            "tilt": ellipse.tilt(),
+        }),
+        Law::HalfSpace(half) => json!({ "normal": half.normal(), "bound": half.bound() }),
+        Law::Contact(law) => contact(law),
+        Law::Rotate(Rotate { axis }) | Law::Translate(Translate { axis }) => {
+            json!({ "axis": vector(*axis) })
+        }
+        Law::Pivot(pivot) => {
+            let centre = match pivot.centre() {
+                Centre::Intervals(list) => {
+                    let one = |(to, at): &(f64, Vec3)| json!({ "to": to.is_finite().then_some(to), "at": vector(*at) });
+                    json!({ "kind": "intervals", "intervals": list.iter().map(one).collect::<Value>() })
+                }
+                Centre::Path(splines) => json!({ "kind": "path", "path": path(splines) }),
+            };
+            json!({ "axis": vector(pivot.axis()), "centre": centre })
+        }
+        Law::Ball(Ball) | Law::Product(Product) => json!({}),
+        Law::Place(Place { child_in_parent }) => {
+            json!({ "child_in_parent": frame(*child_in_parent) })
+        }
+        Law::Ellipsoid(Ellipsoid { radii, axis }) => {
+            let axis = match axis {
+                SurfaceAxis::OpenSim => "opensim",
+                SurfaceAxis::Normal => "normal",
+            };
+            json!({ "radii": vector(*radii), "surface_axis": axis })
+        }
+        Law::ConstantCurvature(ConstantCurvature { neutral, length }) => {
+            json!({ "neutral": neutral, "length": length })
+        }
+        Law::Compensate(Compensate { weight }) => json!({ "weight": weight }),
+        Law::Scale(Scale { along }) => match along {
+            Along::Everywhere => json!({ "along": "everywhere" }),
+            Along::Axis(axis) => json!({ "along": "axis", "axis": vector(*axis) }),
+            Along::Volume(axis) => json!({ "along": "volume", "axis": vector(*axis) }),
+        },
+        Law::Shear(Shear { along, across }) => {
+            json!({ "along": vector(*along), "across": vector(*across) })
+        }
+        Law::Curve(Curve { path: splines, heading }) => {
+            let heading = heading.map(
+                |Heading { forward, up }| json!({ "forward": vector(forward), "up": vector(up) }),
+            );
+            json!({ "path": path(splines), "heading": heading })
+        }
+        Law::Custom(custom) => json!({ "law": custom.law, "parameters": custom.parameters }),
+    }
+}
+
+fn vectors(list: &[Vec3]) -> Value {
+    list.iter().map(|v| vector(*v)).collect()
+}
+
+fn path(splines: &[SimmSpline; 3]) -> Value {
+    splines.iter().map(spline).collect()
+}
+
+fn cone(JointCone { of, cone }: &JointCone) -> Value {
+    let (of, axes) = match of {
+        Swinging::Angles(axes) => ("angles", vectors(axes)),
+        Swinging::Directions(axes) => ("directions", vectors(axes)),
+        Swinging::Orientation => ("orientation", json!([])),
+    };
+    let point = |ConePoint { direction, twist }: &ConePoint| json!({ "direction": vector(*direction), "twist": twist });
+    json!({
+        "of": of,
+        "axes": axes,
+        "rest": vector(cone.rest()),
+        "twist_at_rest": cone.twist_at_rest(),
+        "points": cone.points().iter().map(point).collect::<Value>(),
+        "subdivisions": cone.subdivisions(),
+        "projection": match cone.projection() {
+            Projection::Nearest => "nearest",
+            Projection::TowardRest => "toward_rest",
+        },
+    })
+}
+
+fn contact(Contact { before: _, most_gap, law }: &Contact) -> Value {
+    let law: &Gliding = law;
+    let pair = |ContactPair { first, second, at }: &ContactPair| json!({ "first": vector(*first), "second": vector(*second), "at": at });
+    json!({
+        "ellipsoid_in_surface": frame(law.ellipsoid_in_surface()),
+        "radii": vector(law.radii()),
+        "axis": vector(law.axis()),
+        "pairs": law.pairs().iter().map(pair).collect::<Value>(),
+        "most_gap": most_gap,
+    })
+}
