@@ -79,7 +79,7 @@ fn what_is_wrong_is_said_with_its_place() {
     let twice = CONFORMANCE.replacen("\"name\":\"slide\"", "\"name\":\"hinge\"", 1);
     assert!(read(&twice).unwrap_err().contains("it is there twice"));
     // Keys that are not known, and the order of evaluation, are passed over.
-    let more = CONFORMANCE.replacen("\"order\"", "\"author\": \"someone\", \"old_order\"", 1);
+    let more = CONFORMANCE.replacen("\n\"order\"", "\"author\": \"someone\", \"old_order\"", 1);
     assert!(exchange::write(&read(&more).unwrap()) == CONFORMANCE);
 }
 
