@@ -69,7 +69,7 @@ fn ranges_end_where_the_text_says() {
         // Zarins et al. 1983.
         ("knee_rotation_r", "tibia_r", -45.0, 25.0),
         ("ankle_angle_r", "talus_r", -65.0, 50.0),
-        ("subtalar_angle_r", "calcaneus_r", -32.0, 40.0),
+        ("subtalar_angle_r", "calcaneus_r", -36.0, 40.0),
         ("midtarsal_angle_r", "midfoot_r", -25.0, 25.0),
         ("mtp_angle_r", "toes_r", -90.0, 45.0),
         ("hallux_angle_r", "hallux_r", -25.0, 25.0),
