@@ -126,3 +126,58 @@ pub(crate) fn swept(curve: &[Knot], across: Vec3) -> Mesh {
     }
     Mesh::of_rings(&rings, tip(start, -1.0), tip(end, 1.0))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tube(points: &[([f64; 3], f64)]) -> Vec<Knot> {
+        let stations: Vec<Knot> = points.iter().map(|&(at, r)| (at.into(), [r, r])).collect();
+        curve::through(&stations, false, STEPS)
+    }
+
+    /// How far a point is from the line through kept points, and its radius from the one there.
+    fn off(kept: &[Knot], (at, radii): Knot) -> [f64; 2] {
+        let to = |pair: &[Knot]| {
+            let ((start, first), (end, last)) = (pair[0], pair[1]);
+            let way = end - start;
+            let share = ((at - start).dot(way) / way.dot(way)).clamp(0.0, 1.0);
+            let radius = first[0] + (last[0] - first[0]) * share;
+            [(start + way * share - at).norm(), (radius - radii[0]).abs()]
+        };
+        kept.windows(2).map(to).min_by(|a, b| a[0].total_cmp(&b[0])).unwrap()
+    }
+
+    #[test]
+    fn straight_tubes_need_few_rings_and_bent_ones_keep_their_shape() {
+        let straight = tube(&[
+            ([0.0, 0.0, 0.0], 0.01),
+            ([0.0, 0.1, 0.0], 0.01),
+            ([0.0, 0.2, 0.0], 0.01),
+            ([0.0, 0.3, 0.0], 0.01),
+            ([0.0, 0.4, 0.0], 0.01),
+        ]);
+        // One ring at each end and one every two spans.
+        assert_eq!(thinned(&straight).len(), 3);
+        let bent = tube(&[
+            ([0.0, 0.0, 0.0], 0.004),
+            ([0.03, 0.05, 0.0], 0.012),
+            ([0.0, 0.11, 0.02], 0.005),
+            ([0.0, 0.2, 0.02], 0.005),
+        ]);
+        let kept = thinned(&bent);
+        assert!(kept.len() < bent.len() && kept[0] == bent[0] && kept.last() == bent.last());
+        for knot in bent {
+            let [away, thicker] = off(&kept, knot);
+            // The nearest place on a line is no farther than the one at the same share of the way, but has
+            // a slightly different radius.
+            assert!(away < FLATNESS && thicker < 2.0 * FLATNESS, "{away} {thicker}");
+        }
+        // Straight, but swelling between its ends: the swelling stays.
+        let swelling =
+            tube(&[([0.0; 3], 0.005), ([0.0, 0.05, 0.0], 0.015), ([0.0, 0.1, 0.0], 0.005)]);
+        let widest = thinned(&swelling).iter().map(|(_, radii)| radii[0]).fold(0.0, f64::max);
+        assert!((widest - 0.015).abs() < FLATNESS, "{widest}");
+        assert_eq!(thinned(&swelling[..1]), swelling[..1]);
+    }
+}

@@ -51,6 +51,20 @@ fn a_figure_is_as_high_in_every_view_as_it_is() {
     assert!(heights.iter().all(|h| h.abs_diff(384) <= 2), "{heights:?}");
 }
 
+/// The ellipsoids of that model reach half a metre below its bones.
+#[test]
+fn what_bones_glide_on_is_whole_in_the_picture() {
+    let model = open::model("shoulder-shao2003".as_ref()).expect("it is shipped").value;
+    let views = vec![View::named("front").unwrap()];
+    let shown = Sheet { views, show: vec![Show::Bones, Show::Contacts], ..sheet(&model) };
+    let picture = draw(&model, &shown).unwrap();
+    // From the front the first and last rows have one colour, that of sky or ground, unless something reaches them.
+    for y in [0, 399] {
+        let reached = (0..300).filter(|&x| picture.at(x, y) != picture.at(0, y)).count();
+        assert_eq!(reached, 0, "row {y}");
+    }
+}
+
 #[test]
 fn zoom_is_against_the_whole_figure() {
     // A bar of markers: a bone of 0.5 m from the joint to the marker.

@@ -143,7 +143,8 @@ fn table(scaled: &Scaled, kept: bool) -> String {
     if !scaled.unused.is_empty() {
         let (n, names) = (scaled.unused.len(), scaled.unused.iter());
         let few = output::few(names.map(|name| format!("`{name}`")));
-        text.push_str(&format!("  {n} markers not used: {few}\n"));
+        let noun = if n == 1 { "marker" } else { "markers" };
+        text.push_str(&format!("  {n} {noun} of the model not used: {few}\n"));
     }
     let by = |m: &MarkerFit| if kept { m.error } else { m.moved };
     let mut far: Vec<&MarkerFit> = scaled.markers.iter().collect();

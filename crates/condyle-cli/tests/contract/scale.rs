@@ -111,6 +111,21 @@ fn the_table_names_groups_and_markers() {
     assert!(printed.expect(0).starts_with("condyle = 1\nkind = \"model\"\nname = \"leg\"\n"));
 }
 
+/// A model with the marker sets of many laboratories has hundreds that one trial does not use.
+#[test]
+fn of_many_unused_markers_a_few_are_named() {
+    let folder = folder("scale-unused");
+    let spare = |i| format!("[marker.spare_{i}]\nsegment = \"thigh\"\nat = [0.0, {i}e-3, 0.0]\n");
+    let more: String = (0..40).map(spare).collect();
+    folder.write("leg.toml", folder.read("leg.toml") + &more);
+    let run = ["scale", "leg.toml", "--static", "static.trc", "-o", "anna.toml"];
+    let text = folder.condyle(&run).expect(0);
+    assert!(text.contains("  40 markers of the model not used: `spare_0`, `spare_1`, "), "{text}");
+    assert!(text.contains(" and 34 more\n") && !text.contains("spare_39"), "{text}");
+    let json = folder.condyle(&[&run[..], &["--json"]].concat()).json();
+    assert_eq!(json["markers_unused"].as_array().map(Vec::len), Some(40), "{json}");
+}
+
 #[test]
 fn a_model_without_groups_grows_as_a_whole() {
     let folder = folder("scale-whole");

@@ -165,9 +165,7 @@ fn scene(figure: &Figure, show: &[Show]) -> Scene {
 struct Placed {
     /// The box of all bones.
     whole: Bounds,
-    /// The box of all that is in the frame: bones, and what they glide on where that is shown.
-    all: Bounds,
-    /// The box of what is looked at.
+    /// The box of what is looked at: where nothing is named, of all bones and what they are shown to glide on.
     looked: Bounds,
     /// The middle of the joints of joint sets that are looked at, where there are any.
     joints: Option<Vec3>,
@@ -187,17 +185,19 @@ impl Placed {
         if show.contains(&Show::Contacts) {
             contacts::contacts(figure, false, &mut signs);
         }
-        let with = |bounds: Bounds| signs.bounds().map_or(bounds, |signs| bounds.with(signs));
         let chosen = figure.chosen;
         let around = Bounds { low: [-0.5; 3], high: [0.5; 3] };
         let whole = of(None).unwrap_or(around);
-        let (all, looked) = (with(whole), with(of(chosen).unwrap_or(whole)));
+        let looked = match chosen {
+            Some(_) => of(chosen).unwrap_or(whole),
+            None => signs.bounds().map_or(whole, |signs| whole.with(signs)),
+        };
         let first = figure.model.parents_first().first().map(|&id| figure.pose.segment(id));
         let root = first.map_or(Vec3::ZERO, |frame| frame.translation);
         let joints = chosen.map_or(&[][..], |chosen| &chosen.joints);
         let joints = joints.iter().map(|&id| figure.joint(id).translation.to_array());
         let joints = Bounds::of(joints).map(|bounds| Vec3::from(bounds.centre()));
-        Self { whole, all, looked, joints, root: if root.is_finite() { root } else { Vec3::ZERO } }
+        Self { whole, looked, joints, root: if root.is_finite() { root } else { Vec3::ZERO } }
     }
 
     /// The ground under it.
@@ -222,7 +222,8 @@ fn cameras(model: &Model, sheet: &Sheet, placed: &[Placed], layout: &Layout) -> 
         low: (Vec3::from(bounds.low) - off).to_array(),
         high: (Vec3::from(bounds.high) - off).to_array(),
     };
-    let whole = placed.iter().map(|p| moved(&p.all, away(p))).reduce(Bounds::with);
+    let all = |p: &Placed| if sheet.focus.names.is_empty() { p.looked } else { p.whole };
+    let whole = placed.iter().map(|p| moved(&all(p), away(p))).reduce(Bounds::with);
     let mut cameras = vec![];
     for view in &sheet.views {
         let camera = view.camera(model);
