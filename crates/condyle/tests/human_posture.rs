@@ -148,8 +148,8 @@ fn the_human_holds_its_head_up_and_shares_its_turns() -> Result<(), Box<dyn Erro
         assert!(held.lean < 15.0, "{name}: the skull leans by {}°", held.lean);
         assert!(held.step.0 < 5.0, "{name}: {:?}", held.step);
         assert!(held.turn.0 < 5.0, "{name}: {:?}", held.turn);
-        // Squats: 88 of a hundred.
-        assert!(share > 0.85, "{name}: only {share} of {of} frames turn to one side");
+        // Squats: 91 of a hundred, the others all.
+        assert!(share > 0.9, "{name}: only {share} of {of} frames turn to one side");
         assert!(summary.rms < rms, "{name}: {} m", summary.rms);
     }
     Ok(())
