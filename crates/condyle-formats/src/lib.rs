@@ -30,6 +30,8 @@ mod format;
 pub mod glb;
 #[cfg(feature = "opensim")]
 pub mod opensim;
+#[cfg(feature = "plain")]
+pub mod plain;
 #[cfg(feature = "poses")]
 pub mod poses;
 pub mod sto;

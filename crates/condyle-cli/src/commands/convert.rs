@@ -60,7 +60,12 @@ enum Curve {
 
 /// Whether a format holds what moves.
 fn moves(format: &Format) -> bool {
-    !matches!(format.id, Id::Document | Id::Poses)
+    !matches!(format.id, Id::Document | Id::Poses) && !of_models(format)
+}
+
+/// Whether a format of other programs holds models as trees of plain joints.
+fn of_models(format: &Format) -> bool {
+    matches!(format.id, Id::OpenSim)
 }
 
 /// What can be written.
@@ -70,7 +75,7 @@ const WRITTEN: [ContentKind; 4] =
 /// The supported conversions, for the message about any other.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
                      to .glb (an animation) or .trc (the model's markers), and poses (.json) to all \
-                     of these, with --rate as key poses; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved) or .glb; \
+                     of these, with --rate as key poses; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved), .glb, .osim; \
                      a recording (.trc) to .trc or .csv";
 
 impl Convert {
@@ -112,6 +117,11 @@ impl Convert {
                 if target.id == Id::Glb =>
             {
                 self.scene(&model, &Motion::default())?
+            }
+            Content::Model(model) | Content::Document(Document { model, .. })
+                if of_models(target) =>
+            {
+                warned(&self.output, encode::model(target, &model)?)
             }
             Content::Recording(recording) if target.writes.contains(&ContentKind::Recording) => {
                 let name = self.output.file_name().unwrap_or_default().to_string_lossy();
