@@ -168,7 +168,7 @@ pub fn facing_of(joints: &[(&str, Vec3)], up: UpAxis) -> Option<Facing> {
             other.and_then(|other| names.get(&other))
         };
         if let Some(right) = SIDES.iter().find_map(other) {
-            left = left + (*at - *right);
+            left += *at - *right;
         }
     }
     let above = match up {
