@@ -248,8 +248,9 @@ pub const FORMATS: &[Format] = &[
         reads: &[ContentKind::Motion],
         writes: &[ContentKind::Motion, ContentKind::Recording],
         sniff: |bytes| {
-            let start = starts(bytes, 16).to_ascii_lowercase();
-            start.starts_with("time,") || start.starts_with("# indegrees=")
+            let start = starts(bytes, 4096).to_ascii_lowercase();
+            let names = start.lines().find(|line| !line.starts_with('#'));
+            start.starts_with("# indegrees=") || names.is_some_and(|line| line.starts_with("time,"))
         },
         read: |bytes, _| csv::from_bytes(bytes).map(|read| read.map(Content::Table)),
     },

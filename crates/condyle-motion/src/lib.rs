@@ -12,7 +12,7 @@
 //!
 //! In memory, lengths are in metres, angles in radians, times in seconds; other units of a file are
 //! recorded as [`LengthUnit`] and [`AngleUnit`]. [`columns`] assigns columns to coordinates,
-//! [`difference`] compares two motions.
+//! [`difference`] compares two motions, [`upkeep`] filters, fills, resamples and cuts.
 
 mod angles;
 mod animation;
@@ -28,6 +28,7 @@ mod recording;
 mod sample;
 mod subjects;
 mod table;
+pub mod upkeep;
 mod virtual_markers;
 mod zeros;
 

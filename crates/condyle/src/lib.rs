@@ -294,7 +294,7 @@ pub use condyle_model::{
 };
 pub use condyle_motion::{
     self as motion, AngleUnit, Animation, Interpolation, Keys, LengthUnit, Motion, Observed,
-    Posture, Recording, Table, Zeros,
+    Posture, Recording, Table, Zeros, upkeep,
 };
 #[cfg(feature = "picture")]
 pub use condyle_render as render;

@@ -11,6 +11,7 @@ mod pose;
 mod render;
 mod scale;
 mod track;
+mod upkeep;
 
 use crate::failure::Failure;
 use clap::builder::PossibleValuesParser;
@@ -75,6 +76,8 @@ enum Command {
     Scale(scale::Scale),
     /// Write a file in another format.
     Convert(convert::Convert),
+    /// Filter, fill, resample, cut or turn a recording or a motion.
+    Upkeep(upkeep::Upkeep),
     /// Compare two motions, coordinate by coordinate.
     Diff(diff::Diff),
     /// Measure how fast a model is posed on this machine.
@@ -154,6 +157,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
         Command::Track(command) => command.run(),
         Command::Scale(command) => command.run(),
         Command::Convert(command) => command.run(),
+        Command::Upkeep(command) => command.run(),
         Command::Diff(command) => command.run(),
         Command::Bench(command) => command.run(),
         Command::Demo(command) => command.run(),
