@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 pub(crate) struct Convert {
     /// A motion (.mot, .sto, .csv), poses (.json, as `fk` takes them), a model (.osim, .toml, a
-    /// resolved one in .json, or the name of a shipped one), a skeleton with its motion (.bvh) or a
+    /// resolved one in .json, or the name of a shipped one), a skeleton with its motion (.bvh, .glb, .gltf) or a
     /// marker recording (.trc).
     input: PathBuf,
     /// Where to write; `-` is standard output and needs --to.
@@ -71,7 +71,7 @@ const WRITTEN: [ContentKind; 4] =
 /// The supported conversions, for the message about any other.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
                      to .glb (an animation) or .trc (the model's markers), and poses (.json) to all \
-                     of these, with --rate as key poses; a skeleton with its motion (.bvh) to all of these \
+                     of these, with --rate as key poses; a skeleton with its motion (.bvh, .glb, .gltf) to all of these \
                      without --model, and as a model; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved) or .glb; \
                      a recording (.trc) to .trc or .csv";
 
