@@ -195,7 +195,7 @@ impl<'b, 'j, 'r> Accessors<'b, 'j, 'r> {
         for change in 0..changed {
             let at = place_bytes.get(change * place_stride..).unwrap_or_default();
             let element = whole.number(at, false) as usize;
-            let start = element.checked_mul(width).unwrap_or(usize::MAX);
+            let start = element.saturating_mul(width);
             let Some(target) = values.get_mut(start..start.saturating_add(width)) else {
                 let message = format!("{} names element {element} of {count}", places.shown());
                 return Err(Error::new("glb/accessor", message));
