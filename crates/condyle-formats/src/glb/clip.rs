@@ -209,7 +209,7 @@ impl Clip {
     }
 
     /// The longest time between frames where a curve or a step is sampled, in seconds.
-    const STEP: f64 = 1.0 / 30.0;
+    const STEP: f64 = 1.0 / 60.0;
 
     /// The times of frames: those of all keys; where they are a part of an even grid, the grid; and more where curves
     /// and steps would be lost between them. At most `most`, evenly then, with the warning `glb/frames`.
@@ -228,7 +228,7 @@ impl Clip {
         let mut times = match grid(&keys) {
             Some(steps) => {
                 let part = (last - first) / steps as f64;
-                let finer = if bends { (part / Self::STEP - 1e-6).ceil().max(1.0) } else { 1.0 };
+                let finer = if bends { (part / Self::STEP - 1e-3).ceil().max(1.0) } else { 1.0 };
                 let count = steps.saturating_mul(finer as usize);
                 if count < most { even(first, last, count) } else { keys }
             }
@@ -282,7 +282,7 @@ fn grid(keys: &[f64]) -> Option<usize> {
 fn finer(times: &[f64], step: f64, most: usize) -> Vec<f64> {
     let mut all = vec![];
     for pair in times.windows(2) {
-        let parts = ((pair[1] - pair[0]) / step - 1e-6).ceil().max(1.0);
+        let parts = ((pair[1] - pair[0]) / step - 1e-3).ceil().max(1.0);
         if all.len() as f64 + parts > most as f64 {
             return times.to_vec();
         }

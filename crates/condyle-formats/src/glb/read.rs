@@ -38,7 +38,7 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Read<Animation>, Error> {
 /// the animation changes them, all from the rest of the skin. A scale that never changes and is the same along all axes is
 /// multiplied into the lengths below it, so that bones are rigid and in metres.
 ///
-/// Frames are at the times of the keys; a curve or a step between keys that are far apart is sampled 30 times a second
+/// Frames are at the times of the keys; a curve or a step between keys that are far apart is sampled 60 times a second
 /// and more. The key of a frame has the value that the specification gives it at that time.
 ///
 /// `beside` gives the bytes of another file by its path as seen from this one.
