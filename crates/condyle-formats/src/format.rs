@@ -9,7 +9,7 @@ use crate::document::{self, Document, Kind, goals::GoalList, names::NameTable, s
 use crate::opensim::{self, setup};
 #[cfg(feature = "document")]
 use crate::text::utf8;
-use crate::{Error, Read, Recording, Table, csv, sto, trc};
+use crate::{Error, Read, Recording, Table, c3d, csv, sto, trc};
 #[cfg(feature = "poses")]
 use crate::{
     exchange,
@@ -66,6 +66,8 @@ pub enum Content {
     Document(Document),
     /// A marker recording.
     Recording(Recording),
+    /// A marker recording with all that stands beside it.
+    Trial(Box<c3d::Trial>),
     /// A table over time.
     Table(Table),
     /// Poses by the names of coordinates.
@@ -96,7 +98,7 @@ impl Content {
             Self::Model(_) => ContentKind::Model,
             #[cfg(feature = "document")]
             Self::Document(_) => ContentKind::Model,
-            Self::Recording(_) => ContentKind::Recording,
+            Self::Recording(_) | Self::Trial(_) => ContentKind::Recording,
             Self::Table(_) => ContentKind::Motion,
             #[cfg(feature = "poses")]
             Self::Poses(_) => ContentKind::Poses,
@@ -122,6 +124,8 @@ pub enum Id {
     OpenSim,
     /// Marker recordings.
     Trc,
+    /// Marker recordings with analog channels and events.
+    C3d,
     /// OpenSim's motions.
     Mot,
     /// OpenSim's storage files.
@@ -205,6 +209,18 @@ pub const FORMATS: &[Format] = &[
         writes: &[ContentKind::Recording],
         sniff: |bytes| starts(bytes, 64).to_ascii_lowercase().starts_with("pathfiletype"),
         read: |bytes, _| trc::from_bytes(bytes).map(|read| read.map(Content::Recording)),
+    },
+    Format {
+        id: Id::C3d,
+        name: "c3d",
+        title: "recordings of markers, analog channels and events",
+        endings: &["c3d"],
+        reads: &[ContentKind::Recording],
+        writes: &[ContentKind::Recording],
+        sniff: c3d::is_c3d,
+        read: |bytes, _| {
+            c3d::from_bytes(bytes).map(|read| read.map(|trial| Content::Trial(Box::new(trial))))
+        },
     },
     Format {
         id: Id::Mot,
