@@ -17,9 +17,11 @@
 //! | C3D trials: markers, analog channels, events | [`c3d::from_bytes`] | [`c3d::write`] |
 //! | CSV tables | [`csv::read`] | [`csv::write`] |
 //! | OpenSim inverse kinematics setups | [`opensim::setup`] | |
+//! | BVH skeletons with motion | [`bvh::from_bytes`] | |
 //! | GLB animated scenes | | [`glb::write`] |
 //! | XML, for readers of models | [`XmlDocument`] | |
 
+pub mod bvh;
 pub mod c3d;
 pub mod csv;
 
@@ -34,6 +36,7 @@ pub mod glb;
 pub mod opensim;
 #[cfg(feature = "poses")]
 pub mod poses;
+pub mod skeleton;
 pub mod sto;
 pub mod text;
 pub mod trc;
@@ -41,7 +44,7 @@ pub mod trc;
 pub mod xml;
 
 pub use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Subject, nearest};
-pub use condyle_motion::{AngleUnit, Gap, LengthUnit, Observed, Recording, Table};
+pub use condyle_motion::{AngleUnit, Animation, Gap, LengthUnit, Observed, Recording, Table};
 pub use format::{Content, ContentKind, FORMATS, Format, Id, Include};
 #[cfg(feature = "opensim")]
 pub use xml::{Element, XmlDocument};

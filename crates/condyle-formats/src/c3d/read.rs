@@ -310,7 +310,7 @@ impl Decoder<'_> {
             for (point, column) in row.iter().zip(columns.iter()) {
                 let [x, y, z, word] = *point;
                 let seen = word >= 0.0 || word.is_nan();
-                let seen = seen && (x - x) + (y - y) + (z - z) == 0.0;
+                let seen = seen & x.is_finite() & y.is_finite() & z.is_finite();
                 // A word that is no number says nothing of the marker.
                 let word = if seen { word.max(0.0) } else { missing_word(true) };
                 match *column {
