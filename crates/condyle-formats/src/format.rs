@@ -5,6 +5,8 @@
 
 #[cfg(feature = "document")]
 use crate::document::{self, Document, Kind, goals::GoalList, names::NameTable, setup::TrackSetup};
+#[cfg(feature = "glb")]
+use crate::glb;
 #[cfg(feature = "opensim")]
 use crate::opensim::{self, setup};
 use crate::skeleton::Assumed;
@@ -148,6 +150,8 @@ pub enum Id {
     Poses,
     /// Binary glTF.
     Glb,
+    /// glTF in JSON, and the files of VRM, which are GLB.
+    Gltf,
     /// Skeletons with motion of Biovision.
     Bvh,
 }
@@ -270,6 +274,28 @@ pub const FORMATS: &[Format] = &[
         },
         read: |bytes, _| csv::from_bytes(bytes).map(|read| read.map(Content::Table)),
     },
+    #[cfg(feature = "glb")]
+    Format {
+        id: Id::Glb,
+        name: "glb",
+        title: "binary glTF: skins, their skeletons and animations; animated scenes",
+        endings: &["glb"],
+        reads: &[ContentKind::Motion, ContentKind::Model],
+        writes: &[ContentKind::Scene],
+        sniff: |bytes| bytes.starts_with(b"glTF"),
+        read: |bytes, _| animation(glb::from_bytes(bytes)),
+    },
+    #[cfg(feature = "glb")]
+    Format {
+        id: Id::Gltf,
+        name: "gltf",
+        title: "glTF in JSON, and VRM: skins, their skeletons and animations",
+        endings: &["gltf", "vrm"],
+        reads: &[ContentKind::Motion, ContentKind::Model],
+        writes: &[],
+        sniff: glb::looks_like_json,
+        read: |bytes, _| animation(glb::from_bytes(bytes)),
+    },
     #[cfg(feature = "poses")]
     Format {
         id: Id::Poses,
@@ -293,17 +319,6 @@ pub const FORMATS: &[Format] = &[
         writes: &[],
         sniff: |bytes| starts(bytes, 64).to_ascii_lowercase().starts_with("hierarchy"),
         read: |bytes, _| animation(bvh::from_bytes(bytes)),
-    },
-    #[cfg(feature = "glb")]
-    Format {
-        id: Id::Glb,
-        name: "glb",
-        title: "binary glTF, an animated scene",
-        endings: &["glb"],
-        reads: &[],
-        writes: &[ContentKind::Scene],
-        sniff: |bytes| bytes.starts_with(b"glTF"),
-        read: |_, _| Err(Error::new("glb/not-read", "scenes are written, not read")),
     },
 ];
 
@@ -363,6 +378,11 @@ impl Format {
     ) -> Result<Read<Content>, Error> {
         match self.id {
             Id::Bvh => animation(bvh::from_bytes_with(bytes, assumed)),
+            #[cfg(feature = "glb")]
+            Id::Glb | Id::Gltf => {
+                let options = glb::Options { assumed: *assumed, ..glb::Options::default() };
+                animation(glb::read(bytes, &options, &mut |_| Err("the file is read alone".into())))
+            }
             _ => self.read(bytes, include),
         }
     }
@@ -413,6 +433,10 @@ mod tests {
             (Id::Mot, sto::write(&table).unwrap()),
             (Id::Csv, csv::write(&table).unwrap()),
             (Id::Poses, "{\"flexion\": 0.5}".to_owned()),
+            (
+                Id::Gltf,
+                "{\"nodes\": [{}], \"skins\": [{\"joints\": [0]}], \"asset\": {\"version\": \"2.0\"}}".into(),
+            ),
             (
                 Id::Bvh,
                 "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\n1\n".into(),

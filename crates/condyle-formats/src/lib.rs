@@ -18,7 +18,7 @@
 //! | CSV tables | [`csv::read`] | [`csv::write`] |
 //! | OpenSim inverse kinematics setups | [`opensim::setup`] | |
 //! | BVH skeletons with motion | [`bvh::from_bytes`] | |
-//! | GLB animated scenes | | [`glb::write`] |
+//! | GLB and glTF skeletons with motion; animated scenes | [`glb::read`] | [`glb::write`] |
 //! | XML, for readers of models | [`XmlDocument`] | |
 
 pub mod bvh;
