@@ -12,7 +12,7 @@ use crate::opensim::{self, setup};
 use crate::skeleton::Assumed;
 #[cfg(feature = "document")]
 use crate::text::utf8;
-use crate::{Animation, Error, Read, Recording, Table, bvh, csv, sto, trc};
+use crate::{Animation, Error, Read, Recording, Table, bvh, c3d, csv, sto, trc};
 #[cfg(feature = "poses")]
 use crate::{
     exchange,
@@ -69,6 +69,8 @@ pub enum Content {
     Document(Document),
     /// A marker recording.
     Recording(Recording),
+    /// A marker recording with all that stands beside it.
+    Trial(Box<c3d::Trial>),
     /// A table over time.
     Table(Table),
     /// A skeleton with what it does: a model and a motion at once.
@@ -110,7 +112,7 @@ impl Content {
             Self::Model(_) => ContentKind::Model,
             #[cfg(feature = "document")]
             Self::Document(_) => ContentKind::Model,
-            Self::Recording(_) => ContentKind::Recording,
+            Self::Recording(_) | Self::Trial(_) => ContentKind::Recording,
             Self::Table(_) | Self::Animation(_) => ContentKind::Motion,
             #[cfg(feature = "poses")]
             Self::Poses(_) => ContentKind::Poses,
@@ -136,6 +138,8 @@ pub enum Id {
     OpenSim,
     /// Marker recordings.
     Trc,
+    /// Marker recordings with analog channels and events.
+    C3d,
     /// OpenSim's motions.
     Mot,
     /// OpenSim's storage files.
@@ -223,6 +227,18 @@ pub const FORMATS: &[Format] = &[
         writes: &[ContentKind::Recording],
         sniff: |bytes| starts(bytes, 64).to_ascii_lowercase().starts_with("pathfiletype"),
         read: |bytes, _| trc::from_bytes(bytes).map(|read| read.map(Content::Recording)),
+    },
+    Format {
+        id: Id::C3d,
+        name: "c3d",
+        title: "recordings of markers, analog channels and events",
+        endings: &["c3d"],
+        reads: &[ContentKind::Recording],
+        writes: &[ContentKind::Recording],
+        sniff: c3d::is_c3d,
+        read: |bytes, _| {
+            c3d::from_bytes(bytes).map(|read| read.map(|trial| Content::Trial(Box::new(trial))))
+        },
     },
     Format {
         id: Id::Mot,

@@ -205,8 +205,10 @@ pub fn content_as(
     let mut read = with_tasks(path, read)?;
     #[cfg(not(feature = "opensim"))]
     let mut read = read;
-    if let Content::Recording(recording) = &mut read.value {
-        read.warnings.extend(recording.settle_zeros(zeros));
+    match &mut read.value {
+        Content::Recording(recording) => read.warnings.extend(recording.settle_zeros(zeros)),
+        Content::Trial(trial) => read.warnings.extend(trial.recording.settle_zeros(zeros)),
+        _ => {}
     }
     if let Content::Animation(animation) = &mut read.value
         && animation.model.name().is_empty()
@@ -349,6 +351,7 @@ pub fn recording_with(path: &Path, zeros: Zeros) -> Result<Read<Recording>, Open
     } else {
         return only(path, ContentKind::Recording, zeros, |content| match content {
             Content::Recording(recording) => Some(recording),
+            Content::Trial(trial) => Some(trial.recording),
             _ => None,
         });
     };
