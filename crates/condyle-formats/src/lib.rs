@@ -19,6 +19,7 @@
 //! | OpenSim inverse kinematics setups | [`opensim::setup`] | |
 //! | BVH skeletons with motion | [`bvh::from_bytes`] | |
 //! | GLB and glTF skeletons with motion; animated scenes | [`glb::read`] | [`glb::write`] |
+//! | GLB characters of a user, given back with a new animation | | [`glb::reanimate`] |
 //! | XML, for readers of models | [`XmlDocument`] | |
 
 pub mod bvh;
