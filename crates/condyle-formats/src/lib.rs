@@ -16,7 +16,7 @@
 //! | resolved models (JSON) | [`exchange::read`] | [`exchange::write`] |
 //! | CSV tables | [`csv::read`] | [`csv::write`] |
 //! | OpenSim inverse kinematics setups | [`opensim::setup`] | |
-//! | BVH skeletons with motion | [`bvh::from_bytes`] | |
+//! | BVH skeletons with motion | [`bvh::from_bytes`] | [`bvh::write`] |
 //! | GLB animated scenes | | [`glb::write`] |
 //! | XML, for readers of models | [`XmlDocument`] | |
 

@@ -27,7 +27,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 pub use parts::{MotionParts, motion_parts};
-pub use source::{files_read, is_standard_input, nameless_is, skeletons_are};
+pub use source::{assumed, files_read, is_standard_input, nameless_is, skeletons_are};
 
 /// A file that could not be used.
 #[derive(Debug)]
