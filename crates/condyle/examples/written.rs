@@ -3,8 +3,8 @@
 //!
 //! `cargo run --example written -- MODEL FORMAT OUT [POSES]` writes OUT and OUT.json.
 
-use condyle::formats::plain::{Legal, Written};
 use condyle::formats::opensim;
+use condyle::formats::plain::{Legal, Written};
 use condyle::math::{Affine, Quat};
 use condyle::{Model, open};
 use serde_json::{Map, Value, json};

@@ -5,10 +5,8 @@ use crate::scene;
 use condyle_diagnostics::{Diagnostic, Error, Read};
 #[cfg(feature = "glb")]
 use condyle_formats::glb;
-use condyle_formats::{ContentKind, Format, Id, csv, sto, trc};
-#[cfg(feature = "glb")]
-use condyle_model::Mode;
-use condyle_model::Model;
+use condyle_formats::{ContentKind, Format, Id, bvh, c3d, csv, sto, trc};
+use condyle_model::{Mode, Model};
 use condyle_motion::{AngleUnit, Motion, Recording, Table};
 
 /// A motion of a model: a table in degrees, a CSV in radians and metres, or a scene of plain bones in
@@ -32,6 +30,7 @@ pub fn motion(
     match format.id {
         #[cfg(feature = "glb")]
         Id::Glb => scene(model, motion, Mode::Open, markers),
+        Id::Bvh => skeleton(format, model, motion, Mode::Open, bvh::USUAL_UNIT),
         _ => {
             let table = motion_table(format, model, motion, name, remarks);
             self::table(format, &table).map(Read::clean)
@@ -99,6 +98,7 @@ pub fn scene(
     Ok(Read { value: glb::write(&value)?, warnings })
 }
 
+<<<<<<< HEAD
 /// A model in the text of another program, with what was fitted, dropped or turned into something else.
 ///
 /// # Errors
@@ -111,6 +111,22 @@ pub fn model(format: &Format, model: &Model) -> Result<Read<Vec<u8>>, Error> {
             let _ = model;
             Err(not_written(format, ContentKind::Model))
         }
+=======
+/// A motion as a skeleton of plain bones that moves, with so many metres in a unit. Limits are applied here.
+///
+/// # Errors
+/// `format/not-written` if skeletons are not written in this format; what the writer finds wrong.
+pub fn skeleton(
+    format: &Format,
+    model: &Model,
+    motion: &Motion,
+    mode: Mode,
+    metres_per_unit: f64,
+) -> Result<Read<Vec<u8>>, Error> {
+    match format.id {
+        Id::Bvh => Ok(bvh::write(model, motion, mode, metres_per_unit)?.map(String::into_bytes)),
+        _ => Err(not_written(format, ContentKind::Scene)),
+>>>>>>> main
     }
 }
 
@@ -151,7 +167,27 @@ pub fn recording_with_remarks(
             markers.header.extend(remarks.iter().map(|remark| ("upkeep".into(), remark.clone())));
             table(format, &markers)
         }
+        Id::C3d => {
+            let mut trial = c3d::Trial::of(recording.clone());
+            if !remarks.is_empty() {
+                trial.parameters.set_texts("PROCESSING", "UPKEEP", remarks);
+            }
+            c3d::write(&trial)
+        }
         _ => Err(not_written(format, ContentKind::Recording)),
+    }
+}
+
+/// A trial: all of it as C3D; its markers and other points in other formats, where lengths are millimetres or, in
+/// a CSV, metres, and all other numbers as they are.
+///
+/// # Errors
+/// As [`recording`].
+pub fn trial(format: &Format, trial: &c3d::Trial, name: &str) -> Result<Vec<u8>, Error> {
+    match format.id {
+        Id::C3d => c3d::write(trial),
+        Id::Csv => table(format, &trial.to_table()),
+        _ => recording(format, &trial.all_points(), name),
     }
 }
 

@@ -11,22 +11,27 @@ use condyle_diagnostics::did_you_mean;
 use condyle_diagnostics::{Diagnostic, Error, Read, nearest};
 #[cfg(feature = "document")]
 use condyle_formats::document::{self, goals::GoalList, names::NameTable};
+#[cfg(feature = "glb")]
+use condyle_formats::glb;
 #[cfg(feature = "opensim")]
 use condyle_formats::opensim::setup::{IkSetup, IkTasks};
 #[cfg(feature = "poses")]
 use condyle_formats::poses::{Poses, Resolved};
+use condyle_formats::skeleton::Assumed;
 use condyle_formats::text::utf8;
 use condyle_formats::{Content, ContentKind, FORMATS, Format, Id};
 use condyle_model::Model;
 #[cfg(feature = "poses")]
 use condyle_motion::Keys;
-use condyle_motion::{AngleUnit, Motion, Recording, Table, Zeros};
+use condyle_motion::{AngleUnit, Animation, Motion, Recording, Table, Zeros};
 use source::{bytes, nameless_format};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
 pub use parts::{MotionParts, motion_parts};
-pub use source::{files_read, is_standard_input, nameless_is};
+pub use source::{
+    animation_is, assumed, files_read, is_standard_input, nameless_is, skeletons_are,
+};
 
 /// A file that could not be used.
 #[derive(Debug)]
@@ -152,6 +157,19 @@ pub fn content_with(
     wanted: Option<ContentKind>,
     zeros: Zeros,
 ) -> Result<Read<Content>, OpenError> {
+    content_as(path, wanted, zeros, &source::assumed())
+}
+
+/// Opens a file as [`content_with`] does, with what is known of a skeleton whose file does not state it.
+///
+/// # Errors
+/// As [`content_with`].
+pub fn content_as(
+    path: &Path,
+    wanted: Option<ContentKind>,
+    zeros: Zeros,
+    assumed: &Assumed,
+) -> Result<Read<Content>, OpenError> {
     #[cfg(feature = "document")]
     if wanted.is_none_or(|kind| kind == ContentKind::Model)
         && !is_standard_input(path)
@@ -174,7 +192,12 @@ pub fn content_with(
     let found = named.or_else(|| Format::of_bytes(&bytes).filter(fits));
     let format = found.ok_or_else(no_format)?;
     let mut include = |name: &str| included(path, name);
-    let read = format.read(&bytes, &mut include).map_err(|error| {
+    let read = match format.id {
+        #[cfg(feature = "glb")]
+        Id::Glb | Id::Gltf => scene_of(path, &bytes, assumed),
+        _ => format.read_with(&bytes, &mut include, assumed),
+    };
+    let read = read.map_err(|error| {
         // Only the text of a document is shown beside its errors.
         let document = format.id == Id::Document;
         let text = document.then(|| utf8(&bytes).ok().map(str::to_owned)).flatten();
@@ -184,11 +207,19 @@ pub fn content_with(
     let mut read = with_tasks(path, read)?;
     #[cfg(not(feature = "opensim"))]
     let mut read = read;
-    if let Content::Recording(recording) = &mut read.value {
-        read.warnings.extend(recording.settle_zeros(zeros));
+    match &mut read.value {
+        Content::Recording(recording) => read.warnings.extend(recording.settle_zeros(zeros)),
+        Content::Trial(trial) => read.warnings.extend(trial.recording.settle_zeros(zeros)),
+        _ => {}
+    }
+    if let Content::Animation(animation) = &mut read.value
+        && animation.model.name().is_empty()
+    {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        animation.model.set_name(&name);
     }
     match wanted {
-        Some(kind) if read.value.kind() != kind => {
+        Some(kind) if !read.value.holds(kind) => {
             let message =
                 format!("the file holds {}, not {}", read.value.kind().name(), kind.name());
             let error = Error::new("file/content", message);
@@ -196,6 +227,20 @@ pub fn content_with(
         }
         _ => Ok(read),
     }
+}
+
+/// The skeleton of a glTF file, whose buffers may be files beside it.
+#[cfg(feature = "glb")]
+fn scene_of(path: &Path, bytes: &[u8], assumed: &Assumed) -> Result<Read<Content>, Error> {
+    let options = glb::Options { animation: source::wanted_animation(), assumed: *assumed };
+    let mut other = |name: &str| {
+        source::bytes(&beside(path, name)).map_err(|error| match error.cause {
+            Cause::Io(error) => error.to_string(),
+            _ => error.to_string(),
+        })
+    };
+    let read = glb::read(bytes, &options, &mut other)?;
+    Ok(read.map(|found| Content::Animation(Box::new(found))))
 }
 
 /// A setup with the tasks that have a file of their own.
@@ -259,6 +304,23 @@ pub fn model(path: &Path) -> Result<Read<Model>, OpenError> {
         Content::Model(model) => Some(model),
         #[cfg(feature = "document")]
         Content::Document(document) => Some(document.model),
+        Content::Animation(animation) => Some(animation.model),
+        _ => None,
+    })
+}
+
+/// Opens a model as [`model`] does, with the motion that its file holds; without frames if it holds none.
+///
+/// # Errors
+/// As [`content`].
+pub fn animation(path: &Path) -> Result<Read<Animation>, OpenError> {
+    only(path, ContentKind::Model, Zeros::Told, |content| match content {
+        Content::Animation(animation) => Some(*animation),
+        Content::Model(model) => Some(Animation { model, motion: Motion::default() }),
+        #[cfg(feature = "document")]
+        Content::Document(document) => {
+            Some(Animation { model: document.model, motion: Motion::default() })
+        }
         _ => None,
     })
 }
@@ -291,6 +353,7 @@ pub fn recording_with(path: &Path, zeros: Zeros) -> Result<Read<Recording>, Open
     } else {
         return only(path, ContentKind::Recording, zeros, |content| match content {
             Content::Recording(recording) => Some(recording),
+            Content::Trial(trial) => Some(trial.recording),
             _ => None,
         });
     };
@@ -305,6 +368,7 @@ pub fn recording_with(path: &Path, zeros: Zeros) -> Result<Read<Recording>, Open
 pub fn table(path: &Path) -> Result<Read<Table>, OpenError> {
     only(path, ContentKind::Motion, Zeros::Told, |content| match content {
         Content::Table(table) => Some(table),
+        Content::Animation(found) => Some(found.motion.to_table(&found.model, found.model.name())),
         _ => None,
     })
 }

@@ -1,5 +1,6 @@
 //! `condyle convert`: a file in another format.
 
+mod dropped;
 mod includes;
 
 use super::{Angles, Limits, Outcome};
@@ -8,28 +9,31 @@ use crate::motion_format as format;
 use crate::output;
 use crate::screen::say;
 use clap::{Args, ValueEnum};
+use condyle::formats::bvh;
+use condyle::formats::c3d::Trial;
 use condyle::formats::document::{self, Document};
 use condyle::formats::exchange;
 use condyle::formats::poses::Poses;
-use condyle::formats::{Content, ContentKind, Format, Id, trc};
+use condyle::formats::{Content, ContentKind, Format, Id, LengthUnit, Recording};
 use condyle::open::{Cause, OpenError};
 use condyle::{
-    AngleUnit, Error, Interpolation, Mode, Model, Motion, Program, Table, encode, legal, open,
-    shipped,
+    AngleUnit, Animation, Error, Interpolation, Mode, Model, Motion, Program, Table, encode, legal,
+    open, shipped,
 };
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(crate) struct Convert {
     /// A motion (.mot, .sto, .csv), poses (.json, as `fk` takes them), a model (.osim, .toml, a
-    /// resolved one in .json, or the name of a shipped one) or a marker recording (.trc).
+    /// resolved one in .json, or the name of a shipped one), a skeleton with its motion (.bvh, .glb, .gltf) or a
+    /// marker recording (.trc, .c3d).
     input: PathBuf,
     /// Where to write; `-` is standard output and needs --to.
     output: PathBuf,
     /// The model that a motion belongs to: a file, or the name of a shipped one.
     ///
-    /// With it a motion can be baked to .glb: plain bones, each with its translation, rotation and
-    /// scale in its parent at every frame, for programs without joint sets.
+    /// With it a motion can be baked to .glb and .bvh: plain bones, each with its translation, rotation and
+    /// (in .glb) scale in its parent at every frame, for programs without joint sets.
     #[arg(long, value_name = "M")]
     model: Option<PathBuf>,
     /// The unit of angles in a motion that does not state it; without it, it is guessed by their size.
@@ -44,6 +48,12 @@ pub(crate) struct Convert {
     /// First move coordinates to the nearest posture that the model allows.
     #[arg(long, value_enum, default_value_t = Limits::Off)]
     limits: Limits,
+    /// Of a C3D only the markers, not its angles, forces, moments and powers.
+    #[arg(long)]
+    markers_only: bool,
+    /// Of a C3D the analog channels in their own units, as a table (.csv, .mot, .sto).
+    #[arg(long, conflicts_with = "markers_only")]
+    analog: bool,
     /// The format of the output; by default that of its ending.
     #[arg(long, value_parser = format::names(&WRITTEN))]
     to: Option<String>,
@@ -74,9 +84,16 @@ const WRITTEN: [ContentKind; 4] =
 
 /// The supported conversions, for the message about any other.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
+<<<<<<< HEAD
                      to .glb (an animation) or .trc (the model's markers), and poses (.json) to all \
                      of these, with --rate as key poses; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved), .glb, .osim; \
                      a recording (.trc) to .trc or .csv";
+=======
+                     to .glb or .bvh (an animation), .trc or .c3d (the model's markers), and poses (.json) to all \
+                     of these, with --rate as key poses; a skeleton with its motion (.bvh, .glb, .gltf) to all of these \
+                     without --model, and as a model; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved), .glb or .bvh; \
+                     a recording (.trc, .c3d) to .trc, .c3d or .csv, with --analog its channels to .csv, .mot or .sto";
+>>>>>>> main
 
 impl Convert {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
@@ -101,6 +118,7 @@ impl Convert {
             {
                 exchange::write(&model).into_bytes()
             }
+            Content::Animation(animation) => self.animation(*animation, target)?,
             Content::Poses(poses) if moves(target) => {
                 self.motion_as(Moving::Poses(poses), target)?
             }
@@ -119,15 +137,31 @@ impl Convert {
                 self.scene(&model, &Motion::default())?
             }
             Content::Model(model) | Content::Document(Document { model, .. })
+<<<<<<< HEAD
                 if of_models(target) =>
             {
                 warned(&self.output, encode::model(target, &model)?)
+=======
+                if target.id == Id::Bvh =>
+            {
+                self.skeleton(target, &model, &Motion::default())?
+>>>>>>> main
             }
             Content::Recording(recording) if target.writes.contains(&ContentKind::Recording) => {
                 let name = self.output.file_name().unwrap_or_default().to_string_lossy();
                 encode::recording(target, &recording, &name)?
             }
-            Content::Recording(_) => {
+            Content::Trial(trial)
+                if self.analog && target.writes.contains(&ContentKind::Motion) =>
+            {
+                self.channels(&trial, target)?
+            }
+            Content::Trial(trial)
+                if !self.analog && target.writes.contains(&ContentKind::Recording) =>
+            {
+                self.trial(*trial, target)?
+            }
+            Content::Recording(_) | Content::Trial(_) => {
                 return Err(self.unknown(
                     target,
                     "; `condyle track MODEL TRIAL -o OUT` computes motions from recordings",
@@ -179,8 +213,49 @@ impl Convert {
         }
     }
 
+    /// A trial, with what the target cannot hold named.
+    fn trial(&self, trial: Trial, target: &Format) -> Result<Vec<u8>, Failure> {
+        let name = self.output.file_name().unwrap_or_default().to_string_lossy();
+        if self.markers_only {
+            let units = LengthUnit::Millimetre;
+            let recording = Recording { units, ..trial.recording };
+            return Ok(encode::recording(target, &recording, &name)?);
+        }
+        if target.id != Id::C3d {
+            dropped::tell(&trial, target);
+        }
+        Ok(encode::trial(target, &trial, &name)?)
+    }
+
+    /// The analog channels of a trial over time.
+    fn channels(&self, trial: &Trial, target: &Format) -> Result<Vec<u8>, Failure> {
+        if trial.analog.channels.is_empty() {
+            let what = self.input.display();
+            return Err(Failure::new(format!("{what}: there are no analog channels")));
+        }
+        let start = trial.recording.times.first().copied().unwrap_or(0.0);
+        let mut table = trial.analog.to_table(start);
+        table.name = self.name();
+        Ok(encode::table(target, &table)?)
+    }
+
     fn scene(&self, model: &Model, motion: &Motion) -> Result<Vec<u8>, Failure> {
         Ok(warned(&self.output, encode::scene(model, motion, self.mode(), None)?))
+    }
+
+    /// A skeleton in the unit that is told, else in centimetres.
+    fn skeleton(
+        &self,
+        target: &Format,
+        model: &Model,
+        motion: &Motion,
+    ) -> Result<Vec<u8>, Failure> {
+        let unit = open::assumed().metres_per_unit;
+        if unit.is_none() {
+            say(&format!("note: {}: lengths are in cm (--length-unit)", self.output.display()));
+        }
+        let unit = unit.unwrap_or(bvh::USUAL_UNIT);
+        Ok(warned(&self.output, encode::skeleton(target, model, motion, self.mode(), unit)?))
     }
 
     fn motion_as(&self, moving: Moving, target: &Format) -> Result<Vec<u8>, Failure> {
@@ -203,7 +278,7 @@ impl Convert {
             return rewritten(&self.input, table, self.angles, target);
         };
         let model = warned(model_path, open::model(model_path)?);
-        let mut motion = match moving {
+        let motion = match moving {
             Moving::Poses(poses) => self.poses(&poses, &model)?,
             Moving::Table(mut table) => {
                 let settled = open::settled(&model, &mut table, self.angles.map(Into::into));
@@ -213,8 +288,33 @@ impl Convert {
                 motion
             }
         };
+        self.moved(&model, motion, target)
+    }
+
+    /// A skeleton with its motion: that of another model where one is told, else its own, or the skeleton
+    /// alone.
+    fn animation(&self, animation: Animation, target: &Format) -> Result<Vec<u8>, Failure> {
+        let Animation { model, motion } = animation;
+        match target.id {
+            Id::Document => Ok(document::write(&model).into_bytes()),
+            Id::Poses => Ok(exchange::write(&model).into_bytes()),
+            _ if !moves(target) => Err(self.unknown(target, "")),
+            _ if self.model.is_some() => {
+                self.motion_as(Moving::Table(motion.to_table(&model, &self.name())), target)
+            }
+            _ => self.moved(&model, motion, target),
+        }
+    }
+
+    /// A motion of a model in another format, legal if asked for.
+    fn moved(
+        &self,
+        model: &Model,
+        mut motion: Motion,
+        target: &Format,
+    ) -> Result<Vec<u8>, Failure> {
         if self.limits == Limits::On {
-            let legal::Kept { solved, lost } = legal::keep(&model, &mut motion);
+            let legal::Kept { solved, lost } = legal::keep(model, &mut motion);
             let all = motion.frames.len();
             if solved > 0 {
                 say(&format!(
@@ -230,11 +330,12 @@ impl Convert {
             }
         }
         match target.id {
-            Id::Glb => return self.scene(&model, &motion),
-            Id::Trc => return self.virtual_markers(&model, &motion),
-            _ => motion.make_effective(&Program::compile(&model), self.mode()),
+            Id::Glb => return self.scene(model, &motion),
+            Id::Bvh => return self.skeleton(target, model, &motion),
+            Id::Trc | Id::C3d => return self.virtual_markers(model, &motion, target),
+            _ => motion.make_effective(&Program::compile(model), self.mode()),
         }
-        format::encoded(target, &model, &motion, &self.name(), None, &[])
+        format::encoded(target, model, &motion, &self.name(), None, &[])
     }
 
     fn wrong(&self, error: Error) -> Failure {
@@ -259,7 +360,12 @@ impl Convert {
     }
 
     /// The model's markers along a motion, as a recording in millimetres.
-    fn virtual_markers(&self, model: &Model, motion: &Motion) -> Result<Vec<u8>, Failure> {
+    fn virtual_markers(
+        &self,
+        model: &Model,
+        motion: &Motion,
+        target: &Format,
+    ) -> Result<Vec<u8>, Failure> {
         if model.markers().is_empty() {
             return Err(Failure::new(format!(
                 "model `{}` has no markers to record: add a marker set",
@@ -275,7 +381,7 @@ impl Convert {
         let recording = motion.virtual_markers(model, self.mode());
         let recording = recording.map_err(|error| Failure::new(error.to_string()))?;
         let name = self.output.file_name().unwrap_or_default().to_string_lossy();
-        Ok(trc::write(&recording, &name)?.into_bytes())
+        Ok(encode::recording(target, &recording, &name)?)
     }
 }
 

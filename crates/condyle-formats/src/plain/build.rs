@@ -5,7 +5,9 @@ use super::legal::Legal;
 use super::rule::{Rule, Rules, Value};
 use super::{Source, Tree, Variable};
 use condyle_diagnostics::{Diagnostic, listed};
-use condyle_math::function::{Curve, Function, FunctionOfSeveral, MultivariatePolynomial, SimmSpline};
+use condyle_math::function::{
+    Curve, Function, FunctionOfSeveral, MultivariatePolynomial, SimmSpline,
+};
 use condyle_math::{Affine, EulerOrder, Quat, Vec3};
 use condyle_model::component::{AngleNames, MotionLaw, SurfaceAxis};
 use condyle_model::{Component, CoordinateId, CoordinateKind, Law, Model, Pose, SegmentId, Signal};
@@ -60,7 +62,10 @@ pub fn build(model: &Model, choice: Choice) -> Tree {
 enum Raw {
     Step(Step),
     /// Nothing is known of it but what it reads.
-    Unknown { what: String, reads: Reads },
+    Unknown {
+        what: String,
+        reads: Reads,
+    },
 }
 
 /// What an unknown part reads.
@@ -165,10 +170,13 @@ impl Builder<'_> {
                     }
                 }
                 Law::Combine(combine) => {
-                    found.push(inputs.map(|inputs| rules.several(combine.function.clone(), &inputs)));
+                    found.push(
+                        inputs.map(|inputs| rules.several(combine.function.clone(), &inputs)),
+                    );
                 }
                 Law::Angles(law) => {
-                    let from = component.inputs.first().and_then(|from| self.orientations.get(from));
+                    let from =
+                        component.inputs.first().and_then(|from| self.orientations.get(from));
                     let angles = from.and_then(|from| self.angles.get(from));
                     if let (AngleNames::Euler(EulerOrder::XYZ), None, Some(Ok(values))) =
                         (law.names, law.mirrored, angles)
@@ -243,7 +251,9 @@ impl Builder<'_> {
     /// Steps as they are, and everything from the first to the last unknown one as six measured values.
     fn joined(&mut self, id: SegmentId, raw: Vec<Raw>) -> (Vec<Step>, Option<Measured>) {
         let unknown = |part: &Raw| matches!(part, Raw::Unknown { .. });
-        let (Some(first), Some(last)) = (raw.iter().position(unknown), raw.iter().rposition(unknown)) else {
+        let (Some(first), Some(last)) =
+            (raw.iter().position(unknown), raw.iter().rposition(unknown))
+        else {
             let steps: Vec<Step> = raw.into_iter().filter_map(Raw::step).collect();
             return (simplified(&steps, &self.tree.rules), None);
         };
@@ -272,7 +282,8 @@ impl Builder<'_> {
                             let path = path.take_while(|&above| Some(above) != surface);
                             let links = path.filter_map(|above| self.link_of.get(&above));
                             let above = links.flat_map(|&link| self.tree.links[link].steps.iter());
-                            let values: Vec<Value> = above.chain(&before).filter_map(Step::value).collect();
+                            let values: Vec<Value> =
+                                above.chain(&before).filter_map(Step::value).collect();
                             if let Some(all) = &mut drivers {
                                 all.extend(values);
                             }
@@ -293,7 +304,9 @@ impl Builder<'_> {
         steps.push(Step::Fixed(rest));
         let [x, y, z, turn_x, turn_y, turn_z] = slots;
         let axes = [Vec3::X, Vec3::Y, Vec3::Z];
-        steps.extend(axes.into_iter().zip([x, y, z]).map(|(axis, value)| Step::Slide { axis, value }));
+        steps.extend(
+            axes.into_iter().zip([x, y, z]).map(|(axis, value)| Step::Slide { axis, value }),
+        );
         let turns = axes.into_iter().zip([turn_x, turn_y, turn_z]);
         steps.extend(turns.map(|(axis, value)| Step::Turn { axis, value }));
         steps.extend(after);
@@ -315,7 +328,9 @@ impl Builder<'_> {
                     Some(leader) => open.push(leader),
                     None => {
                         values.extend(self.scalars.get(&signal));
-                        values.extend(self.angles.get(&id).and_then(|a| a.ok()).into_iter().flatten());
+                        values.extend(
+                            self.angles.get(&id).and_then(|a| a.ok()).into_iter().flatten(),
+                        );
                     }
                 },
                 Signal::Segment(_) => {}
@@ -330,7 +345,10 @@ impl Builder<'_> {
         while let Some(signal) = open.pop() {
             let Signal::Output(at, _) = signal else { continue };
             if self.steps + raw.len() + open.len() > MOST_STEPS {
-                raw.push(Raw::Unknown { what: "a product of too many parts".into(), reads: Reads::Values(None) });
+                raw.push(Raw::Unknown {
+                    what: "a product of too many parts".into(),
+                    reads: Reads::Values(None),
+                });
                 return;
             }
             let model = self.model;
@@ -347,7 +365,10 @@ impl Builder<'_> {
         let inputs: Option<Vec<Value>> =
             component.values().map(|input| self.scalars.get(&input).copied()).collect();
         let what = || format!("{} `{}`", component.law.kind().name, name_of(self.model, component));
-        let unknown = |inputs: Option<Vec<Value>>| Raw::Unknown { what: what(), reads: Reads::Values(inputs) };
+        let unknown = |inputs: Option<Vec<Value>>| Raw::Unknown {
+            what: what(),
+            reads: Reads::Values(inputs),
+        };
         let steps = match (&component.law, inputs.as_deref()) {
             (Law::Rotate(law), Some(&[value])) => vec![Step::Turn { axis: law.axis, value }],
             (Law::Translate(law), Some(&[value])) => vec![Step::Slide { axis: law.axis, value }],
@@ -404,7 +425,10 @@ impl Builder<'_> {
                 None => return raw.push(unknown(None)),
             },
             (Law::Contact(_), _) => {
-                return raw.push(Raw::Unknown { what: what(), reads: Reads::From(component.segments_at("surface").next()) });
+                return raw.push(Raw::Unknown {
+                    what: what(),
+                    reads: Reads::From(component.segments_at("surface").next()),
+                });
             }
             _ => return raw.push(unknown(inputs)),
         };
@@ -546,7 +570,8 @@ impl Builder<'_> {
         let (variables, pose) = &*shared;
         // What is measured before is at its own rest there: 0.
         let values = self.tree.rules.evaluate(variables);
-        let [before, after] = [before, after].map(|s| self.tree.product(s, &values, pose, self.model));
+        let [before, after] =
+            [before, after].map(|s| self.tree.product(s, &values, pose, self.model));
         let whole = pose.segment_in_parent(self.model, id);
         let rest = before.rigid_inverse() * whole * after.rigid_inverse();
         Affine::new(Quat::from_mat3(rest.linear).normalized().to_mat3(), rest.translation)

@@ -113,7 +113,8 @@ impl Step {
 pub fn simplified(steps: &[Step], rules: &Rules) -> Vec<Step> {
     let mut out: Vec<Step> = vec![];
     for step in steps {
-        let step = match step.value().and_then(|value| rules.as_constant(value).map(|c| (value, c))) {
+        let step = match step.value().and_then(|value| rules.as_constant(value).map(|c| (value, c)))
+        {
             Some((value, constant)) => {
                 let mut values = vec![0.0; value + 1];
                 values[value] = constant;
@@ -146,10 +147,9 @@ fn undoes(before: &Step, after: &Step) -> bool {
         | (Step::Slide { axis, value }, Step::Slide { axis: back, value: same }) => {
             value == same && (*axis + *back).norm() < 1e-15
         }
-        (
-            Step::Ball { orientation, inverse },
-            Step::Ball { orientation: same, inverse: other },
-        ) => orientation == same && inverse != other,
+        (Step::Ball { orientation, inverse }, Step::Ball { orientation: same, inverse: other }) => {
+            orientation == same && inverse != other
+        }
         _ => false,
     }
 }

@@ -71,7 +71,13 @@ pub fn fit(model: &Model, tree: &mut Tree) -> Vec<Fit> {
 }
 
 /// Fits the slots of one part; the order of the polynomials.
-fn fit_part(tree: &mut Tree, slots: &[Value; 6], drivers: &[Value], samples: &[Vec<f64>], held: &[Vec<f64>]) -> usize {
+fn fit_part(
+    tree: &mut Tree,
+    slots: &[Value; 6],
+    drivers: &[Value],
+    samples: &[Vec<f64>],
+    held: &[Vec<f64>],
+) -> usize {
     let spread = |v: Value| {
         let all = samples.iter().chain(held).map(|s| s[v]);
         all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), x| (l.min(x), u.max(x)))
@@ -90,7 +96,8 @@ fn fit_part(tree: &mut Tree, slots: &[Value; 6], drivers: &[Value], samples: &[V
         }
     }
     let open: Vec<Value> = slots.iter().copied().filter(|&slot| !still(slot)).collect();
-    let drivers: Vec<Value> = drivers.iter().copied().filter(|&d| !still(d)).take(MOST_DRIVERS).collect();
+    let drivers: Vec<Value> =
+        drivers.iter().copied().filter(|&d| !still(d)).take(MOST_DRIVERS).collect();
     if drivers.is_empty() {
         open.iter().for_each(|&slot| tree.rules.set(slot, Rule::Constant(0.0)));
         return 0;
@@ -106,9 +113,10 @@ fn fit_part(tree: &mut Tree, slots: &[Value; 6], drivers: &[Value], samples: &[V
     let mut best: Option<(f64, usize, Vec<MultivariatePolynomial>)> = None;
     for order in 1..=12 {
         let Some(polynomials) = polynomials(order, &domain, &x, &y) else { break };
-        let worst = x_held.iter().zip(&y_held).flat_map(|(x, y)| {
-            polynomials.iter().zip(y).map(|(p, y)| (p.apply(x) - y).abs())
-        });
+        let worst = x_held
+            .iter()
+            .zip(&y_held)
+            .flat_map(|(x, y)| polynomials.iter().zip(y).map(|(p, y)| (p.apply(x) - y).abs()));
         let worst = worst.fold(0.0, f64::max);
         if best.as_ref().is_none_or(|(least, ..)| worst < *least) {
             best = Some((worst, order, polynomials));
@@ -126,7 +134,12 @@ fn fit_part(tree: &mut Tree, slots: &[Value; 6], drivers: &[Value], samples: &[V
 }
 
 /// Least-squares polynomials of an order for every column of `y`; `None` where they have too many coefficients.
-fn polynomials(order: usize, domain: &[(f64, f64)], x: &[Vec<f64>], y: &[Vec<f64>]) -> Option<Vec<MultivariatePolynomial>> {
+fn polynomials(
+    order: usize,
+    domain: &[(f64, f64)],
+    x: &[Vec<f64>],
+    y: &[Vec<f64>],
+) -> Option<Vec<MultivariatePolynomial>> {
     let dimension = domain.len();
     let powers = powers(dimension, order, MOST_COEFFICIENTS)?;
     let count = powers.len();
@@ -138,7 +151,8 @@ fn polynomials(order: usize, domain: &[(f64, f64)], x: &[Vec<f64>], y: &[Vec<f64
     let mut right = vec![vec![0.0; count]; columns];
     let mut basis = vec![0.0; count];
     for (x, y) in x.iter().zip(y) {
-        let tables: Vec<Vec<f64>> = x.iter().zip(domain).map(|(&x, &d)| chebyshev(scaled(x, d), order)).collect();
+        let tables: Vec<Vec<f64>> =
+            x.iter().zip(domain).map(|(&x, &d)| chebyshev(scaled(x, d), order)).collect();
         for (value, powers) in basis.iter_mut().zip(&powers) {
             *value = powers.iter().zip(&tables).map(|(&p, table)| table[usize::from(p)]).product();
         }
@@ -202,8 +216,14 @@ fn chebyshev(u: f64, order: usize) -> Vec<f64> {
 }
 
 /// The coefficients over powers of x of a sum of products of Chebyshev polynomials of scaled x.
-fn monomials(powers: &[Vec<u8>], coefficients: &[f64], domain: &[(f64, f64)], order: usize) -> Vec<f64> {
-    let place: HashMap<&[u8], usize> = powers.iter().enumerate().map(|(i, p)| (&p[..], i)).collect();
+fn monomials(
+    powers: &[Vec<u8>],
+    coefficients: &[f64],
+    domain: &[(f64, f64)],
+    order: usize,
+) -> Vec<f64> {
+    let place: HashMap<&[u8], usize> =
+        powers.iter().enumerate().map(|(i, p)| (&p[..], i)).collect();
     let mut here = coefficients.to_vec();
     for (axis, &(lower, upper)) in domain.iter().enumerate() {
         let (slope, start) = (2.0 / (upper - lower), -(lower + upper) / (upper - lower));
@@ -265,7 +285,11 @@ fn solve(factor: &[f64], n: usize, right: &mut [f64]) {
 
 /// The least-squares polynomial of a function of one number over an interval, by ascending powers, and its
 /// largest error there.
-pub fn polynomial_of_one(function: &dyn Fn(f64) -> f64, domain: (f64, f64), order: usize) -> Option<(Vec<f64>, f64)> {
+pub fn polynomial_of_one(
+    function: &dyn Fn(f64) -> f64,
+    domain: (f64, f64),
+    order: usize,
+) -> Option<(Vec<f64>, f64)> {
     const POINTS: usize = 400;
     if domain.1 - domain.0 < 1e-12 {
         return Some((vec![function(domain.0)], 0.0));
@@ -278,7 +302,8 @@ pub fn polynomial_of_one(function: &dyn Fn(f64) -> f64, domain: (f64, f64), orde
     let x: Vec<Vec<f64>> = (0..POINTS).map(|i| vec![at(i)]).collect();
     let y: Vec<Vec<f64>> = x.iter().map(|x| vec![function(x[0])]).collect();
     let polynomial = polynomials(order, &[domain], &x, &y)?.pop()?;
-    let worst = x.iter().zip(&y).map(|(x, y)| (polynomial.apply(&x[..]) - y[0]).abs()).fold(0.0, f64::max);
+    let worst =
+        x.iter().zip(&y).map(|(x, y)| (polynomial.apply(&x[..]) - y[0]).abs()).fold(0.0, f64::max);
     Some((polynomial.coefficients().to_vec(), worst))
 }
 
@@ -289,8 +314,11 @@ mod tests {
     #[test]
     fn a_polynomial_of_two_variables_is_found_again() {
         // 1 + 2y + 3y² + 4x + 5xy + 6x² over an oblong that is not about 0.
-        let truth = MultivariatePolynomial::up_to_order(2, 2, &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).unwrap();
-        let x: Vec<Vec<f64>> = (0..100).map(|i| vec![0.5 + f64::from(i % 10) * 0.2, f64::from(i / 10) * 0.1 - 0.3]).collect();
+        let truth =
+            MultivariatePolynomial::up_to_order(2, 2, &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).unwrap();
+        let x: Vec<Vec<f64>> = (0..100)
+            .map(|i| vec![0.5 + f64::from(i % 10) * 0.2, f64::from(i / 10) * 0.1 - 0.3])
+            .collect();
         let y: Vec<Vec<f64>> = x.iter().map(|x| vec![truth.apply(x)]).collect();
         let found = polynomials(2, &[(0.5, 2.3), (-0.3, 0.6)], &x, &y).unwrap();
         for (found, truth) in found[0].coefficients().iter().zip(truth.coefficients()) {

@@ -40,11 +40,21 @@ impl<'m> Legal<'m> {
             CoordinateKind::Translation | CoordinateKind::Scale => 0.5,
             CoordinateKind::Other => 1.0,
         };
-        let lower = coordinate.range.lower.unwrap_or_else(|| coordinate.range.upper.map_or(default, |u| u.min(default)) - reach);
+        let lower = coordinate
+            .range
+            .lower
+            .unwrap_or_else(|| coordinate.range.upper.map_or(default, |u| u.min(default)) - reach);
         let upper = coordinate.range.upper.unwrap_or_else(|| lower.max(default) + reach);
         // Files give ranges of many turns and metres where they mean none.
-        let wide = if coordinate.kind == CoordinateKind::Rotation { 2.0 * std::f64::consts::PI } else { 20.0 };
-        (lower.clamp(default.min(0.0) - wide, default.max(0.0) + wide), upper.clamp(default.min(0.0) - wide, default.max(0.0) + wide))
+        let wide = if coordinate.kind == CoordinateKind::Rotation {
+            2.0 * std::f64::consts::PI
+        } else {
+            20.0
+        };
+        (
+            lower.clamp(default.min(0.0) - wide, default.max(0.0) + wide),
+            upper.clamp(default.min(0.0) - wide, default.max(0.0) + wide),
+        )
     }
 
     /// The default pose: its stored numbers, and the pose itself.

@@ -38,7 +38,8 @@ pub fn measure(model: &Model, tree: &Tree, poses: usize) -> Vec<LinkError> {
         let values = tree.values_at(model, pose, &variables);
         for (link, error) in tree.links.iter().zip(&mut errors) {
             let said = tree.link_transform(link, &values, pose, model);
-            *error = error.or(LinkError::between(pose.segment_in_parent(model, link.segment), said));
+            *error =
+                error.or(LinkError::between(pose.segment_in_parent(model, link.segment), said));
         }
     }
     errors

@@ -95,7 +95,8 @@ impl Tree {
     pub fn variables_at(&self, model: &Model, stored: &[f64]) -> Vec<f64> {
         let angle = |id: CoordinateId, axis: usize| {
             let place = model.stored_range(id);
-            let q: [f64; 4] = std::array::from_fn(|i| stored.get(place.start + i).copied().unwrap_or(0.0));
+            let q: [f64; 4] =
+                std::array::from_fn(|i| stored.get(place.start + i).copied().unwrap_or(0.0));
             EulerOrder::XYZ.from_mat3(Quat::from(q).normalized().to_mat3())[axis.min(2)]
         };
         self.variables
@@ -130,14 +131,25 @@ impl Tree {
 
     /// The transform of a part of a chain at values.
     pub fn product(&self, steps: &[Step], values: &[f64], pose: &Pose, model: &Model) -> Affine {
-        steps.iter().fold(Affine::IDENTITY, |so_far, step| so_far * step.transform(values, &|o| {
-            let stored = self.orientations.get(o).map(|&id| pose.coordinate(model, id));
-            stored.and_then(|q| q.first_chunk::<4>()).map_or(Quat::IDENTITY, |q| Quat::from(*q).normalized())
-        }))
+        steps.iter().fold(Affine::IDENTITY, |so_far, step| {
+            so_far
+                * step.transform(values, &|o| {
+                    let stored = self.orientations.get(o).map(|&id| pose.coordinate(model, id));
+                    stored
+                        .and_then(|q| q.first_chunk::<4>())
+                        .map_or(Quat::IDENTITY, |q| Quat::from(*q).normalized())
+                })
+        })
     }
 
     /// The transform of a link in its parent at values.
-    pub fn link_transform(&self, link: &Link, values: &[f64], pose: &Pose, model: &Model) -> Affine {
+    pub fn link_transform(
+        &self,
+        link: &Link,
+        values: &[f64],
+        pose: &Pose,
+        model: &Model,
+    ) -> Affine {
         self.product(&link.steps, values, pose, model)
     }
 }

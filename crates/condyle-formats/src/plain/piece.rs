@@ -95,9 +95,9 @@ fn independent(axes: &[(Vec3, Value)], axis: Vec3) -> bool {
 /// Three independent axes that begin with the given ones.
 pub fn completed(axes: &[(Vec3, Value)]) -> [Vec3; 3] {
     let other = |a: Vec3| {
-        let least = [Vec3::X, Vec3::Y, Vec3::Z].into_iter().min_by(|u, v| {
-            u.dot(a).abs().total_cmp(&v.dot(a).abs())
-        });
+        let least = [Vec3::X, Vec3::Y, Vec3::Z]
+            .into_iter()
+            .min_by(|u, v| u.dot(a).abs().total_cmp(&v.dot(a).abs()));
         a.cross(least.unwrap_or(Vec3::X)).normalized()
     };
     match *axes {

@@ -36,7 +36,8 @@ pub struct Names {
 impl Names {
     /// The name, changed where it has to be.
     pub fn take(&mut self, wanted: &str) -> String {
-        let plain = |c: char| if c.is_alphanumeric() || matches!(c, '_' | '-' | '.') { c } else { '_' };
+        let plain =
+            |c: char| if c.is_alphanumeric() || matches!(c, '_' | '-' | '.') { c } else { '_' };
         let mut base: String = wanted.chars().map(plain).collect();
         if base.is_empty() {
             base.push('_');

@@ -75,7 +75,9 @@ impl Coordinates {
             }
         }
         let variable_value = |place: usize| {
-            (0..tree.rules.len()).find(|&v| *tree.rules.rule(v) == Rule::Variable(place)).unwrap_or_default()
+            (0..tree.rules.len())
+                .find(|&v| *tree.rules.rule(v) == Rule::Variable(place))
+                .unwrap_or_default()
         };
         let of_tree = |place: usize, name: &str| {
             let variable = &tree.variables[place];
@@ -178,7 +180,12 @@ impl Coordinates {
     /// The joint that each variable belongs to: where it moves an axis by itself, else, if it is no angle or
     /// distance, where a function of it does.
     fn owners(&mut self, tree: &Tree, moved: &[Moved]) {
-        let uses = || moved.iter().enumerate().flat_map(|(n, m)| m.piece.values().map(move |(v, t)| (n, v, t)));
+        let uses = || {
+            moved
+                .iter()
+                .enumerate()
+                .flat_map(|(n, m)| m.piece.values().map(move |(v, t)| (n, v, t)))
+        };
         for (number, value, turns) in uses() {
             let Some(place) = own_function(tree, value) else { continue };
             let plain = match tree.rules.rule(value) {
@@ -282,7 +289,8 @@ impl Coordinates {
 
     /// What couples coordinates.
     pub(super) fn couplers(&self, out: &mut String, tree: &Tree) {
-        let mut values: Vec<(Value, usize)> = self.coupled.iter().map(|(&v, &at)| (v, at)).collect();
+        let mut values: Vec<(Value, usize)> =
+            self.coupled.iter().map(|(&v, &at)| (v, at)).collect();
         values.sort_unstable();
         for (value, at) in values {
             let Some(dependent) = self.all.get(at) else { continue };
@@ -306,7 +314,9 @@ impl Coordinates {
         }
         for (place, variable) in tree.variables.iter().enumerate() {
             let Some(value) = variable.follows else { continue };
-            if let (Some(follower), Some(driver)) = (self.of_variable(place), self.holding(tree, value)) {
+            if let (Some(follower), Some(driver)) =
+                (self.of_variable(place), self.holding(tree, value))
+            {
                 coupler(out, &format!("{follower}_coupler"), &same, driver, follower);
             }
         }
@@ -318,7 +328,13 @@ impl Coordinates {
     }
 }
 
-pub(super) fn coupler(out: &mut String, name: &str, function: &str, drivers: &str, dependent: &str) {
+pub(super) fn coupler(
+    out: &mut String,
+    name: &str,
+    function: &str,
+    drivers: &str,
+    dependent: &str,
+) {
     let _ = writeln!(
         out,
         "<CoordinateCouplerConstraint name=\"{name}\"><isEnforced>true</isEnforced>\
@@ -333,7 +349,8 @@ pub(super) fn coupler(out: &mut String, name: &str, function: &str, drivers: &st
 fn needed(tree: &Tree, moved: &[Moved]) -> HashSet<usize> {
     let forms = tree.rules.forms();
     let mut needed: HashSet<usize> = HashSet::new();
-    let mut open: Vec<Value> = moved.iter().flat_map(|m| m.piece.values().map(|(v, _)| v)).collect();
+    let mut open: Vec<Value> =
+        moved.iter().flat_map(|m| m.piece.values().map(|(v, _)| v)).collect();
     while let Some(value) = open.pop() {
         for &driver in forms.get(value).into_iter().flat_map(|form| &form.drivers) {
             if needed.insert(driver) {

@@ -25,7 +25,8 @@ pub(super) fn one(function: &Function, coupled: bool) -> String {
         Curve::Linear { slope, intercept } => {
             let (slope, intercept) = (factor * slope, factor * intercept);
             let text = numbers([slope, intercept]);
-            let text = format!("<LinearFunction><coefficients>{text}</coefficients></LinearFunction>");
+            let text =
+                format!("<LinearFunction><coefficients>{text}</coefficients></LinearFunction>");
             return if coupled && slope.abs() == 1.0 { multiplied(&text, 1.0) } else { text };
         }
         Curve::Polynomial(p) => {
@@ -40,7 +41,9 @@ pub(super) fn one(function: &Function, coupled: bool) -> String {
 
 fn multiplied(inner: &str, factor: f64) -> String {
     let scale = numbers([factor]);
-    format!("<MultiplierFunction><function>{inner}</function><scale>{scale}</scale></MultiplierFunction>")
+    format!(
+        "<MultiplierFunction><function>{inner}</function><scale>{scale}</scale></MultiplierFunction>"
+    )
 }
 
 fn knots(name: &str, knots: impl Iterator<Item = (f64, f64)>) -> String {

@@ -8,9 +8,16 @@ use condyle_math::Vec3;
 use std::fmt::Write as _;
 
 /// The joint of a body.
-pub(super) fn moved(out: &mut String, moved: &Moved, number: usize, tree: &Tree, coordinates: &Coordinates) {
+pub(super) fn moved(
+    out: &mut String,
+    moved: &Moved,
+    number: usize,
+    tree: &Tree,
+    coordinates: &Coordinates,
+) {
     let piece = &moved.piece;
-    let (class, fixed) = if piece.is_fixed() { ("WeldJoint", true) } else { ("CustomJoint", false) };
+    let (class, fixed) =
+        if piece.is_fixed() { ("WeldJoint", true) } else { ("CustomJoint", false) };
     let name = &moved.joint;
     let (parent, child) = (format!("{name}_parent"), format!("{name}_child"));
     let _ = write!(
@@ -91,7 +98,9 @@ fn axis(out: &mut String, name: &str, direction: Vec3, drive: &Drive<'_>) {
             (*name, "<LinearFunction><coefficients>1 0</coefficients></LinearFunction>".to_owned())
         }
         Drive::Function(name, function) => (*name, function.clone()),
-        Drive::Constant(value) => ("", format!("<Constant><value>{}</value></Constant>", numbers([*value]))),
+        Drive::Constant(value) => {
+            ("", format!("<Constant><value>{}</value></Constant>", numbers([*value])))
+        }
     };
     let _ = write!(
         out,

@@ -109,10 +109,14 @@ impl<'m> File<'m> {
     }
 
     fn text(&mut self) -> String {
-        let mut out = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\" ?>\n<OpenSimDocument Version=\"40000\">\n");
+        let mut out = String::from(
+            "<?xml version=\"1.0\" encoding=\"UTF-8\" ?>\n<OpenSimDocument Version=\"40000\">\n",
+        );
         let name = escaped(&self.tree.name);
         let _ = writeln!(out, "<Model name=\"{name}\">");
-        out.push_str("<credits>written by condyle; masses are not known: 1 kg for each segment</credits>\n");
+        out.push_str(
+            "<credits>written by condyle; masses are not known: 1 kg for each segment</credits>\n",
+        );
         out.push_str("<length_units>meters</length_units>\n<force_units>N</force_units>\n");
         let gravity = match self.tree.up {
             condyle_model::UpAxis::Y => "0 -9.80665 0",
@@ -155,7 +159,8 @@ impl<'m> File<'m> {
 
     /// The path of the frame of a segment, or of the ground.
     fn frame(&self, segment: Option<SegmentId>) -> String {
-        let place = segment.and_then(|id| self.tree.links.iter().position(|link| link.segment == id));
+        let place =
+            segment.and_then(|id| self.tree.links.iter().position(|link| link.segment == id));
         match place.and_then(|place| self.bodies.get(place)) {
             Some(body) => format!("/bodyset/{body}"),
             None => "/ground".to_owned(),
@@ -169,7 +174,8 @@ impl<'m> File<'m> {
             match &closure.condition {
                 Condition::Points { at } => {
                     let text = self.points(at);
-                    let _ = writeln!(out, "<PointConstraint name=\"{name}\">{text}</PointConstraint>");
+                    let _ =
+                        writeln!(out, "<PointConstraint name=\"{name}\">{text}</PointConstraint>");
                 }
                 Condition::Distance { at, distance } => {
                     let text = self.points(at);
@@ -200,7 +206,13 @@ impl<'m> File<'m> {
                     };
                     match (name_of(*follower), name_of(*driver)) {
                         (Some(follower), Some(driver)) => {
-                            coupling::coupler(out, &name, &function::one(function, false), driver, follower);
+                            coupling::coupler(
+                                out,
+                                &name,
+                                &function::one(function, false),
+                                driver,
+                                follower,
+                            );
                         }
                         _ => lost.push(closure.name.clone()),
                     }
@@ -208,7 +220,10 @@ impl<'m> File<'m> {
             }
         }
         if !lost.is_empty() {
-            let message = format!("constraints of coordinates that move nothing are left out: {}", listed(lost));
+            let message = format!(
+                "constraints of coordinates that move nothing are left out: {}",
+                listed(lost)
+            );
             self.remarks.push(Diagnostic::warning("osim/dropped", message));
         }
     }
