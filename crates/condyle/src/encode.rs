@@ -98,7 +98,6 @@ pub fn scene(
     Ok(Read { value: glb::write(&value)?, warnings })
 }
 
-<<<<<<< HEAD
 /// A model in the text of another program, with what was fitted, dropped or turned into something else.
 ///
 /// # Errors
@@ -111,7 +110,9 @@ pub fn model(format: &Format, model: &Model) -> Result<Read<Vec<u8>>, Error> {
             let _ = model;
             Err(not_written(format, ContentKind::Model))
         }
-=======
+    }
+}
+
 /// A motion as a skeleton of plain bones that moves, with so many metres in a unit. Limits are applied here.
 ///
 /// # Errors
@@ -126,7 +127,6 @@ pub fn skeleton(
     match format.id {
         Id::Bvh => Ok(bvh::write(model, motion, mode, metres_per_unit)?.map(String::into_bytes)),
         _ => Err(not_written(format, ContentKind::Scene)),
->>>>>>> main
     }
 }
 

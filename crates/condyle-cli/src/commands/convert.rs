@@ -84,16 +84,10 @@ const WRITTEN: [ContentKind; 4] =
 
 /// The supported conversions, for the message about any other.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
-<<<<<<< HEAD
-                     to .glb (an animation) or .trc (the model's markers), and poses (.json) to all \
-                     of these, with --rate as key poses; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved), .glb, .osim; \
-                     a recording (.trc) to .trc or .csv";
-=======
                      to .glb or .bvh (an animation), .trc or .c3d (the model's markers), and poses (.json) to all \
                      of these, with --rate as key poses; a skeleton with its motion (.bvh, .glb, .gltf) to all of these \
-                     without --model, and as a model; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved), .glb or .bvh; \
+                     without --model, and as a model; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved), .glb, .bvh or .osim; \
                      a recording (.trc, .c3d) to .trc, .c3d or .csv, with --analog its channels to .csv, .mot or .sto";
->>>>>>> main
 
 impl Convert {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
@@ -137,15 +131,14 @@ impl Convert {
                 self.scene(&model, &Motion::default())?
             }
             Content::Model(model) | Content::Document(Document { model, .. })
-<<<<<<< HEAD
                 if of_models(target) =>
             {
                 warned(&self.output, encode::model(target, &model)?)
-=======
+            }
+            Content::Model(model) | Content::Document(Document { model, .. })
                 if target.id == Id::Bvh =>
             {
                 self.skeleton(target, &model, &Motion::default())?
->>>>>>> main
             }
             Content::Recording(recording) if target.writes.contains(&ContentKind::Recording) => {
                 let name = self.output.file_name().unwrap_or_default().to_string_lossy();
