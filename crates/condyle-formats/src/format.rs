@@ -333,7 +333,7 @@ pub const FORMATS: &[Format] = &[
         title: "skeletons with motion of Biovision",
         endings: &["bvh"],
         reads: &[ContentKind::Motion, ContentKind::Model],
-        writes: &[],
+        writes: &[ContentKind::Scene],
         sniff: |bytes| starts(bytes, 64).to_ascii_lowercase().starts_with("hierarchy"),
         read: |bytes, _| animation(bvh::from_bytes(bytes)),
     },
