@@ -78,7 +78,7 @@ impl Found {
         let (_, markers) = self.0.iter().find(|(place, _)| place == name)?;
         let mut sum = Vec3::zero();
         for &marker in markers {
-            sum = sum + Vec3::from(recording.position(frame, marker)?);
+            sum += Vec3::from(recording.position(frame, marker)?);
         }
         Some(sum * (1.0 / markers.len() as f64))
     }
