@@ -93,6 +93,7 @@ fn at_rest(seed: u64) -> (Tracker, Vec<f64>, Vec<Option<[f64; 3]>>) {
     };
     let rigid = model.segment_ids().filter(|&id| !program.deforms(id));
     let targets = Targets {
+        marker_factors: vec![],
         orientations: rigid.map(oriented).collect(),
         coordinates: ids.iter().copied().map(wanted).collect(),
         markers: (0..18).map(|i| MarkerTarget { marker: i, weight: 1.0 + i as f64 }).collect(),
