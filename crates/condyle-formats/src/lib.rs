@@ -12,6 +12,7 @@
 //! | model documents (TOML) | [`document::read`] | [`document::write`] |
 //! | TRC marker recordings | [`trc::read`] | [`trc::write`] |
 //! | STO and MOT motions | [`sto::read`] | [`sto::write`] |
+//! | 3D keypoints of pose estimators (JSON, JSON lines, CSV) | [`keypoints::from_bytes`] | |
 //! | poses (JSON) | [`poses::read`] | |
 //! | resolved models (JSON) | [`exchange::read`] | [`exchange::write`] |
 //! | C3D trials: markers, analog channels, events | [`c3d::from_bytes`] | [`c3d::write`] |
@@ -34,6 +35,7 @@ pub mod exchange;
 mod format;
 #[cfg(feature = "glb")]
 pub mod glb;
+pub mod keypoints;
 #[cfg(feature = "opensim")]
 pub mod opensim;
 #[cfg(feature = "plain")]
