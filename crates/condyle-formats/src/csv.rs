@@ -4,12 +4,15 @@
 //! back the same, blank cells for NaN, names quoted where necessary. Read: the same, with commas,
 //! semicolons or tabs, quotes, and lines that start with `#` before the names (`# key=value`
 //! is kept). CSV has no field for a unit: angles are in radians as a rule
-//! ([`AngleUnit::RadiansAsRule`]), unless a line `# inDegrees=yes` or `# inDegrees=no` states it. Words for a missing value are NaN
+//! ([`AngleUnit::RadiansAsRule`]), unless a line `# inDegrees=yes` or `# inDegrees=no` states it. Lines `# Units=m` and
+//! `# upkeep=what was done` are written where a table says so, and stand before the names. Words for a missing value are NaN
 //! ([`cell`](crate::text::cell)).
 
 use std::fmt::Write as _;
 
-use crate::text::{self, Line, check_size, decimal, lines, number, read_decoded, with_comma};
+use crate::text::{
+    self, Line, check_size, decimal, lines, number, plain, read_decoded, with_comma,
+};
 use condyle_diagnostics::{Diagnostic, Error, Place, Read, Warnings};
 use condyle_motion::{AngleUnit, Table};
 
@@ -121,9 +124,16 @@ pub fn write(table: &Table) -> Result<String, Error> {
 /// The lines before the rows.
 pub fn head(table: &Table) -> String {
     let mut text = match table.angle_unit {
-        AngleUnit::Degrees => "# inDegrees=yes\ntime".to_owned(),
-        _ => "time".to_owned(),
+        AngleUnit::Degrees => "# inDegrees=yes\n".to_owned(),
+        _ => String::new(),
     };
+    for (key, value) in &table.header {
+        // Most programs take the first line for names, so that only what changes the meaning of numbers stands before.
+        if ["units", "upkeep"].iter().any(|said| said.eq_ignore_ascii_case(key)) {
+            text.push_str(&format!("# {}={}\n", plain(key), plain(value)));
+        }
+    }
+    text.push_str("time");
     for column in &table.columns {
         text.push(',');
         text.push_str(&quoted(column));

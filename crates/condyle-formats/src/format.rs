@@ -7,9 +7,10 @@
 use crate::document::{self, Document, Kind, goals::GoalList, names::NameTable, setup::TrackSetup};
 #[cfg(feature = "opensim")]
 use crate::opensim::{self, setup};
+use crate::skeleton::Assumed;
 #[cfg(feature = "document")]
 use crate::text::utf8;
-use crate::{Error, Read, Recording, Table, csv, sto, trc};
+use crate::{Animation, Error, Read, Recording, Table, bvh, csv, sto, trc};
 #[cfg(feature = "poses")]
 use crate::{
     exchange,
@@ -68,6 +69,8 @@ pub enum Content {
     Recording(Recording),
     /// A table over time.
     Table(Table),
+    /// A skeleton with what it does: a model and a motion at once.
+    Animation(Box<Animation>),
     /// Poses by the names of coordinates.
     #[cfg(feature = "poses")]
     Poses(Poses),
@@ -89,7 +92,16 @@ pub enum Content {
 }
 
 impl Content {
-    /// What it is.
+    /// Whether it can be used as this: a skeleton with its motion as a model and as a motion.
+    #[must_use]
+    pub fn holds(&self, kind: ContentKind) -> bool {
+        match self {
+            Self::Animation(_) => matches!(kind, ContentKind::Model | ContentKind::Motion),
+            other => other.kind() == kind,
+        }
+    }
+
+    /// What it is; of a skeleton with its motion [`ContentKind::Motion`].
     #[must_use]
     pub fn kind(&self) -> ContentKind {
         match self {
@@ -97,7 +109,7 @@ impl Content {
             #[cfg(feature = "document")]
             Self::Document(_) => ContentKind::Model,
             Self::Recording(_) => ContentKind::Recording,
-            Self::Table(_) => ContentKind::Motion,
+            Self::Table(_) | Self::Animation(_) => ContentKind::Motion,
             #[cfg(feature = "poses")]
             Self::Poses(_) => ContentKind::Poses,
             #[cfg(feature = "document")]
@@ -132,6 +144,8 @@ pub enum Id {
     Poses,
     /// Binary glTF.
     Glb,
+    /// Skeletons with motion of Biovision.
+    Bvh,
 }
 
 /// The text of another file by its path as seen from the one that is read; else a sentence.
@@ -234,8 +248,9 @@ pub const FORMATS: &[Format] = &[
         reads: &[ContentKind::Motion],
         writes: &[ContentKind::Motion, ContentKind::Recording],
         sniff: |bytes| {
-            let start = starts(bytes, 16).to_ascii_lowercase();
-            start.starts_with("time,") || start.starts_with("# indegrees=")
+            let start = starts(bytes, 4096).to_ascii_lowercase();
+            let names = start.lines().find(|line| !line.starts_with('#'));
+            start.starts_with("# indegrees=") || names.is_some_and(|line| line.starts_with("time,"))
         },
         read: |bytes, _| csv::from_bytes(bytes).map(|read| read.map(Content::Table)),
     },
@@ -253,6 +268,16 @@ pub const FORMATS: &[Format] = &[
             false => poses::read(bytes).map(|read| read.map(Content::Poses)),
         },
     },
+    Format {
+        id: Id::Bvh,
+        name: "bvh",
+        title: "skeletons with motion of Biovision",
+        endings: &["bvh"],
+        reads: &[ContentKind::Motion, ContentKind::Model],
+        writes: &[],
+        sniff: |bytes| starts(bytes, 64).to_ascii_lowercase().starts_with("hierarchy"),
+        read: |bytes, _| animation(bvh::from_bytes(bytes)),
+    },
     #[cfg(feature = "glb")]
     Format {
         id: Id::Glb,
@@ -265,6 +290,10 @@ pub const FORMATS: &[Format] = &[
         read: |_, _| Err(Error::new("glb/not-read", "scenes are written, not read")),
     },
 ];
+
+fn animation(read: Result<Read<Animation>, Error>) -> Result<Read<Content>, Error> {
+    read.map(|read| read.map(|animation| Content::Animation(Box::new(animation))))
+}
 
 /// The beginning of a file as text, without a byte order mark.
 fn starts(bytes: &[u8], most: usize) -> String {
@@ -304,6 +333,22 @@ impl Format {
     /// What is wrong, with its place.
     pub fn read(&self, bytes: &[u8], include: &mut Include<'_>) -> Result<Read<Content>, Error> {
         (self.read)(bytes, include)
+    }
+
+    /// As [`Format::read`], with what is known of a skeleton whose file does not state it.
+    ///
+    /// # Errors
+    /// What is wrong, with its place.
+    pub fn read_with(
+        &self,
+        bytes: &[u8],
+        include: &mut Include<'_>,
+        assumed: &Assumed,
+    ) -> Result<Read<Content>, Error> {
+        match self.id {
+            Id::Bvh => animation(bvh::from_bytes_with(bytes, assumed)),
+            _ => self.read(bytes, include),
+        }
     }
 
     /// The endings of all formats that hold this: `.mot, .sto, .csv`.
@@ -352,6 +397,10 @@ mod tests {
             (Id::Mot, sto::write(&table).unwrap()),
             (Id::Csv, csv::write(&table).unwrap()),
             (Id::Poses, "{\"flexion\": 0.5}".to_owned()),
+            (
+                Id::Bvh,
+                "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\n1\n".into(),
+            ),
             (Id::Document, "# x\ncondyle = 1\nkind = \"model\"\n[segment.a]\n".to_owned()),
             (
                 Id::OpenSim,

@@ -16,9 +16,11 @@
 //! | resolved models (JSON) | [`exchange::read`] | [`exchange::write`] |
 //! | CSV tables | [`csv::read`] | [`csv::write`] |
 //! | OpenSim inverse kinematics setups | [`opensim::setup`] | |
+//! | BVH skeletons with motion | [`bvh::from_bytes`] | |
 //! | GLB animated scenes | | [`glb::write`] |
 //! | XML, for readers of models | [`XmlDocument`] | |
 
+pub mod bvh;
 pub mod csv;
 
 #[cfg(feature = "document")]
@@ -32,6 +34,7 @@ pub mod glb;
 pub mod opensim;
 #[cfg(feature = "poses")]
 pub mod poses;
+pub mod skeleton;
 pub mod sto;
 pub mod text;
 pub mod trc;
@@ -39,7 +42,7 @@ pub mod trc;
 pub mod xml;
 
 pub use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Subject, nearest};
-pub use condyle_motion::{AngleUnit, Gap, LengthUnit, Observed, Recording, Table};
+pub use condyle_motion::{AngleUnit, Animation, Gap, LengthUnit, Observed, Recording, Table};
 pub use format::{Content, ContentKind, FORMATS, Format, Id, Include};
 #[cfg(feature = "opensim")]
 pub use xml::{Element, XmlDocument};

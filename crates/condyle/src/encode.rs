@@ -116,9 +116,26 @@ pub fn table(format: &Format, table: &Table) -> Result<Vec<u8>, Error> {
 /// # Errors
 /// `format/not-written` if recordings are not written in this format; what the writer finds wrong.
 pub fn recording(format: &Format, recording: &Recording, name: &str) -> Result<Vec<u8>, Error> {
+    recording_with_remarks(format, recording, name, &[])
+}
+
+/// As [`recording`]; remarks, such as what was done to it, are put into its header.
+///
+/// # Errors
+/// As [`recording`].
+pub fn recording_with_remarks(
+    format: &Format,
+    recording: &Recording,
+    name: &str,
+    remarks: &[String],
+) -> Result<Vec<u8>, Error> {
     match format.id {
-        Id::Trc => trc::write(recording, name).map(String::into_bytes),
-        Id::Csv => table(format, &recording.to_table()),
+        Id::Trc => trc::write_with_remarks(recording, name, remarks).map(String::into_bytes),
+        Id::Csv => {
+            let mut markers = recording.to_table();
+            markers.header.extend(remarks.iter().map(|remark| ("upkeep".into(), remark.clone())));
+            table(format, &markers)
+        }
         _ => Err(not_written(format, ContentKind::Recording)),
     }
 }

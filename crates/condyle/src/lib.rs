@@ -295,8 +295,8 @@ pub use condyle_model::{
     ModelBuilder, Pose, Program, Range, SegmentId, Signal,
 };
 pub use condyle_motion::{
-    self as motion, AngleUnit, Interpolation, Keys, LengthUnit, Motion, Observed, Posture,
-    Recording, Table, Zeros,
+    self as motion, AngleUnit, Animation, Interpolation, Keys, LengthUnit, Motion, Observed,
+    Posture, Recording, Table, Zeros, upkeep,
 };
 #[cfg(feature = "picture")]
 pub use condyle_render as render;

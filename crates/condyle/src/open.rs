@@ -15,18 +15,19 @@ use condyle_formats::document::{self, goals::GoalList, names::NameTable};
 use condyle_formats::opensim::setup::{IkSetup, IkTasks};
 #[cfg(feature = "poses")]
 use condyle_formats::poses::{Poses, Resolved};
+use condyle_formats::skeleton::Assumed;
 use condyle_formats::text::utf8;
 use condyle_formats::{Content, ContentKind, FORMATS, Format, Id};
 use condyle_model::Model;
 #[cfg(feature = "poses")]
 use condyle_motion::Keys;
-use condyle_motion::{AngleUnit, Motion, Recording, Table, Zeros};
+use condyle_motion::{AngleUnit, Animation, Motion, Recording, Table, Zeros};
 use source::{bytes, nameless_format};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
 pub use parts::{MotionParts, motion_parts};
-pub use source::{files_read, is_standard_input, nameless_is};
+pub use source::{files_read, is_standard_input, nameless_is, skeletons_are};
 
 /// A file that could not be used.
 #[derive(Debug)]
@@ -152,6 +153,19 @@ pub fn content_with(
     wanted: Option<ContentKind>,
     zeros: Zeros,
 ) -> Result<Read<Content>, OpenError> {
+    content_as(path, wanted, zeros, &source::assumed())
+}
+
+/// Opens a file as [`content_with`] does, with what is known of a skeleton whose file does not state it.
+///
+/// # Errors
+/// As [`content_with`].
+pub fn content_as(
+    path: &Path,
+    wanted: Option<ContentKind>,
+    zeros: Zeros,
+    assumed: &Assumed,
+) -> Result<Read<Content>, OpenError> {
     #[cfg(feature = "document")]
     if wanted.is_none_or(|kind| kind == ContentKind::Model)
         && !is_standard_input(path)
@@ -174,7 +188,7 @@ pub fn content_with(
     let found = named.or_else(|| Format::of_bytes(&bytes).filter(fits));
     let format = found.ok_or_else(no_format)?;
     let mut include = |name: &str| included(path, name);
-    let read = format.read(&bytes, &mut include).map_err(|error| {
+    let read = format.read_with(&bytes, &mut include, assumed).map_err(|error| {
         // Only the text of a document is shown beside its errors.
         let document = format.id == Id::Document;
         let text = document.then(|| utf8(&bytes).ok().map(str::to_owned)).flatten();
@@ -187,8 +201,14 @@ pub fn content_with(
     if let Content::Recording(recording) = &mut read.value {
         read.warnings.extend(recording.settle_zeros(zeros));
     }
+    if let Content::Animation(animation) = &mut read.value
+        && animation.model.name().is_empty()
+    {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        animation.model.set_name(&name);
+    }
     match wanted {
-        Some(kind) if read.value.kind() != kind => {
+        Some(kind) if !read.value.holds(kind) => {
             let message =
                 format!("the file holds {}, not {}", read.value.kind().name(), kind.name());
             let error = Error::new("file/content", message);
@@ -259,6 +279,23 @@ pub fn model(path: &Path) -> Result<Read<Model>, OpenError> {
         Content::Model(model) => Some(model),
         #[cfg(feature = "document")]
         Content::Document(document) => Some(document.model),
+        Content::Animation(animation) => Some(animation.model),
+        _ => None,
+    })
+}
+
+/// Opens a model as [`model`] does, with the motion that its file holds; without frames if it holds none.
+///
+/// # Errors
+/// As [`content`].
+pub fn animation(path: &Path) -> Result<Read<Animation>, OpenError> {
+    only(path, ContentKind::Model, Zeros::Told, |content| match content {
+        Content::Animation(animation) => Some(*animation),
+        Content::Model(model) => Some(Animation { model, motion: Motion::default() }),
+        #[cfg(feature = "document")]
+        Content::Document(document) => {
+            Some(Animation { model: document.model, motion: Motion::default() })
+        }
         _ => None,
     })
 }
@@ -305,6 +342,7 @@ pub fn recording_with(path: &Path, zeros: Zeros) -> Result<Read<Recording>, Open
 pub fn table(path: &Path) -> Result<Read<Table>, OpenError> {
     only(path, ContentKind::Motion, Zeros::Told, |content| match content {
         Content::Table(table) => Some(table),
+        Content::Animation(found) => Some(found.motion.to_table(&found.model, found.model.name())),
         _ => None,
     })
 }

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Check {
     /// The model: a file, or the name of a shipped one.
     model: PathBuf,
-    /// A motion whose columns are named after coordinates, or poses (.json) as `fk` takes them.
+    /// A motion (by default the one that the model's file holds) whose columns are named after coordinates, or poses (.json) as `fk` takes them.
     motion: Option<PathBuf>,
     /// The unit of angles in a motion that does not state it; without it, it is guessed by their size.
     #[arg(long, value_enum)]
@@ -34,9 +34,15 @@ impl Check {
             Ok(read) => read,
             Err(error) => return self.contradictory(error),
         };
+        let mut own = None;
         let document = match read.value {
             Content::Document(document) => document,
             Content::Model(model) => Document::of(model),
+            Content::Animation(found) => {
+                let table = found.motion.to_table(&found.model, "motion");
+                own = Some(table).filter(|table| table.rows() > 0);
+                Document::of(found.model)
+            }
             _ => return Err(Failure::new("the file holds no model")),
         };
         let model = &document.model;
@@ -56,6 +62,9 @@ impl Check {
             checked.findings.splice(0..0, table.warnings);
             motion = Some(checked);
         }
+        if let (Some(table), None) = (&own, &motion) {
+            motion = Some(check::motion::check(model, table));
+        }
         if self.json {
             if let Some(motion) = &motion {
                 findings.extend(motion.findings.iter().cloned());
@@ -71,7 +80,8 @@ impl Check {
         let mut text = head(&self.model.display().to_string(), &findings);
         grouped(&mut text, &findings);
         let mut broken = findings.iter().any(check::counts);
-        if let (Some(motion), Some(path)) = (&motion, &self.motion) {
+        if let Some(motion) = &motion {
+            let path = self.motion.as_ref().unwrap_or(&self.model);
             text.push('\n');
             motion_text(&mut text, &path.display().to_string(), model, motion);
             broken |= !motion.holds();

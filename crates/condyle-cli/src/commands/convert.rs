@@ -14,15 +14,16 @@ use condyle::formats::poses::Poses;
 use condyle::formats::{Content, ContentKind, Format, Id, trc};
 use condyle::open::{Cause, OpenError};
 use condyle::{
-    AngleUnit, Error, Interpolation, Mode, Model, Motion, Program, Table, encode, legal, open,
-    shipped,
+    AngleUnit, Animation, Error, Interpolation, Mode, Model, Motion, Program, Table, encode, legal,
+    open, shipped,
 };
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(crate) struct Convert {
     /// A motion (.mot, .sto, .csv), poses (.json, as `fk` takes them), a model (.osim, .toml, a
-    /// resolved one in .json, or the name of a shipped one) or a marker recording (.trc).
+    /// resolved one in .json, or the name of a shipped one), a skeleton with its motion (.bvh) or a
+    /// marker recording (.trc).
     input: PathBuf,
     /// Where to write; `-` is standard output and needs --to.
     output: PathBuf,
@@ -70,7 +71,8 @@ const WRITTEN: [ContentKind; 4] =
 /// The supported conversions, for the message about any other.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
                      to .glb (an animation) or .trc (the model's markers), and poses (.json) to all \
-                     of these, with --rate as key poses; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved) or .glb; \
+                     of these, with --rate as key poses; a skeleton with its motion (.bvh) to all of these \
+                     without --model, and as a model; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved) or .glb; \
                      a recording (.trc) to .trc or .csv";
 
 impl Convert {
@@ -96,6 +98,7 @@ impl Convert {
             {
                 exchange::write(&model).into_bytes()
             }
+            Content::Animation(animation) => self.animation(*animation, target)?,
             Content::Poses(poses) if moves(target) => {
                 self.motion_as(Moving::Poses(poses), target)?
             }
@@ -193,7 +196,7 @@ impl Convert {
             return rewritten(&self.input, table, self.angles, target);
         };
         let model = warned(model_path, open::model(model_path)?);
-        let mut motion = match moving {
+        let motion = match moving {
             Moving::Poses(poses) => self.poses(&poses, &model)?,
             Moving::Table(mut table) => {
                 let settled = open::settled(&model, &mut table, self.angles.map(Into::into));
@@ -203,8 +206,33 @@ impl Convert {
                 motion
             }
         };
+        self.moved(&model, motion, target)
+    }
+
+    /// A skeleton with its motion: that of another model where one is told, else its own, or the skeleton
+    /// alone.
+    fn animation(&self, animation: Animation, target: &Format) -> Result<Vec<u8>, Failure> {
+        let Animation { model, motion } = animation;
+        match target.id {
+            Id::Document => Ok(document::write(&model).into_bytes()),
+            Id::Poses => Ok(exchange::write(&model).into_bytes()),
+            _ if !moves(target) => Err(self.unknown(target, "")),
+            _ if self.model.is_some() => {
+                self.motion_as(Moving::Table(motion.to_table(&model, &self.name())), target)
+            }
+            _ => self.moved(&model, motion, target),
+        }
+    }
+
+    /// A motion of a model in another format, legal if asked for.
+    fn moved(
+        &self,
+        model: &Model,
+        mut motion: Motion,
+        target: &Format,
+    ) -> Result<Vec<u8>, Failure> {
         if self.limits == Limits::On {
-            let legal::Kept { solved, lost } = legal::keep(&model, &mut motion);
+            let legal::Kept { solved, lost } = legal::keep(model, &mut motion);
             let all = motion.frames.len();
             if solved > 0 {
                 say(&format!(
@@ -220,11 +248,11 @@ impl Convert {
             }
         }
         match target.id {
-            Id::Glb => return self.scene(&model, &motion),
-            Id::Trc => return self.virtual_markers(&model, &motion),
-            _ => motion.make_effective(&Program::compile(&model), self.mode()),
+            Id::Glb => return self.scene(model, &motion),
+            Id::Trc => return self.virtual_markers(model, &motion),
+            _ => motion.make_effective(&Program::compile(model), self.mode()),
         }
-        format::encoded(target, &model, &motion, &self.name(), None, &[])
+        format::encoded(target, model, &motion, &self.name(), None, &[])
     }
 
     fn wrong(&self, error: Error) -> Failure {

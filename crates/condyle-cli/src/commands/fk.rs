@@ -6,7 +6,7 @@ use crate::output::{self, Output};
 use crate::screen::say;
 use clap::Args;
 use condyle::formats::poses::Resolved;
-use condyle::{Mode, Model, Motion, Pose, Program, SegmentId, legal, open};
+use condyle::{Animation, Mode, Model, Motion, Pose, Program, SegmentId, legal, open};
 use serde_json::json;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ pub(crate) struct Fk {
     /// A JSON file with `{"coordinate": number}` in radians and metres, or a list of such poses.
     #[arg(long, value_name = "P.json", conflicts_with = "motion")]
     pose: Option<PathBuf>,
-    /// A motion whose columns are named after coordinates.
+    /// A motion whose columns are named after coordinates; by default the one that the model's file holds.
     #[arg(long, value_name = "M")]
     motion: Option<PathBuf>,
     /// The unit of angles in a motion that does not state it; without it, it is guessed by their size.
@@ -44,7 +44,7 @@ impl Fk {
         let inputs = [Some(&self.model), self.pose.as_ref(), self.motion.as_ref()];
         let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
         output::check_distinct(&inputs, &[&self.output])?;
-        let model = warned(&self.model, open::model(&self.model)?);
+        let Animation { model, motion } = warned(&self.model, open::animation(&self.model)?);
         let long = match &self.motion {
             // Never the whole of it in memory.
             Some(path) if self.angles.is_none() => {
@@ -65,7 +65,7 @@ impl Fk {
                 frames
             }
             None => {
-                let requests = self.requests(&model)?;
+                let requests = self.requests(&model, motion)?;
                 let mut frames = Frames::create(&model, &self)?;
                 frames.add(&requests)?;
                 frames
@@ -75,12 +75,15 @@ impl Fk {
         Ok(Outcome::Done)
     }
 
-    fn requests(&self, model: &Model) -> Result<Resolved, Failure> {
+    fn requests(&self, model: &Model, own: Motion) -> Result<Resolved, Failure> {
         if let Some(path) = &self.motion {
             let motion = warned(path, open::motion_with(path, model, self.angles.map(Into::into))?);
             return Ok(Resolved { motion, named: vec![] });
         }
         let Some(path) = &self.pose else {
+            if !own.frames.is_empty() {
+                return Ok(Resolved { motion: own, named: vec![] });
+            }
             let motion = Motion { times: vec![0.0], frames: vec![model.defaults()] };
             return Ok(Resolved { motion, named: vec![vec![false; model.coordinates().len()]] });
         };

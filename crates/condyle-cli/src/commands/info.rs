@@ -55,6 +55,11 @@ fn to_json(content: &Content) -> Value {
         Content::Document(document) => model::to_json(&document.model),
         Content::Recording(recording) => recording::to_json(recording),
         Content::Table(table) => table::to_json(table),
+        Content::Animation(found) => json!({
+            "kind": "animation",
+            "model": model::to_json(&found.model),
+            "motion": table::to_json(&found.motion.to_table(&found.model, found.model.name())),
+        }),
         Content::Setup(setup) => setup::to_json(setup),
         Content::Tasks(tasks) => setup::tasks_to_json(tasks),
         Content::Names(table) => json!({
@@ -76,6 +81,10 @@ fn to_text(content: &Content) -> String {
         Content::Document(document) => model::to_text(&document.model),
         Content::Recording(recording) => recording::to_text(recording),
         Content::Table(table) => table::to_text(table),
+        Content::Animation(found) => {
+            let table = found.motion.to_table(&found.model, found.model.name());
+            format!("{}\n{}", model::to_text(&found.model), table::to_text(&table))
+        }
         Content::Setup(setup) => setup::to_text(setup),
         Content::Tasks(tasks) => setup::tasks_to_text(tasks),
         Content::TrackSetup(written) => setup::written_to_text(written),

@@ -11,11 +11,14 @@ mod pose;
 mod render;
 mod scale;
 mod track;
+mod upkeep;
 
 use crate::failure::Failure;
 use clap::builder::PossibleValuesParser;
 use clap::{Parser, Subcommand, ValueEnum};
+use condyle::formats::skeleton::{Assumed, named_unit};
 use condyle::formats::{FORMATS, Format};
+use condyle::model::UpAxis;
 use condyle::{AngleUnit, Zeros, open};
 
 /// Anatomical joints: models, limits, and tracking of markers.
@@ -25,8 +28,28 @@ pub(crate) struct Arguments {
     /// The format of an input without an ending: `-`, which is standard input, or a pipe.
     #[arg(long, global = true, value_name = "FORMAT", value_parser = formats())]
     from: Option<String>,
+    /// The unit of lengths in a file that holds a skeleton and does not state it, such as a .bvh: m, cm, mm,
+    /// in, ft, cmu (1/0.45 inch), or metres in a unit. Without it, it is guessed by the figure's size.
+    #[arg(long, global = true, value_name = "UNIT", value_parser = length_unit)]
+    length_unit: Option<f64>,
+    /// The axis that points up in such a file; without it, it is guessed by the figure's pose.
+    #[arg(long, global = true, value_enum, value_name = "AXIS")]
+    up_axis: Option<Up>,
     #[command(subcommand)]
     command: Command,
+}
+
+/// An axis that points up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Up {
+    Y,
+    Z,
+}
+
+/// Metres in a unit.
+fn length_unit(name: &str) -> Result<f64, String> {
+    let help = "give m, cm, mm, in, ft, cmu, or a positive number of metres";
+    named_unit(name).ok_or_else(|| help.to_owned())
 }
 
 /// The names of all formats that are read.
@@ -53,6 +76,8 @@ enum Command {
     Scale(scale::Scale),
     /// Write a file in another format.
     Convert(convert::Convert),
+    /// Filter, fill, resample, cut or turn a recording or a motion.
+    Upkeep(upkeep::Upkeep),
     /// Compare two motions, coordinate by coordinate.
     Diff(diff::Diff),
     /// Measure how fast a model is posed on this machine.
@@ -116,6 +141,11 @@ pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
     if let Some(format) = arguments.from.as_deref().and_then(Format::of_ending) {
         open::nameless_is(format);
     }
+    let up = arguments.up_axis.map(|up| match up {
+        Up::Y => UpAxis::Y,
+        Up::Z => UpAxis::Z,
+    });
+    open::skeletons_are(Assumed { metres_per_unit: arguments.length_unit, up });
     // What is read from here on is not written over.
     open::files_read();
     match arguments.command {
@@ -127,6 +157,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
         Command::Track(command) => command.run(),
         Command::Scale(command) => command.run(),
         Command::Convert(command) => command.run(),
+        Command::Upkeep(command) => command.run(),
         Command::Diff(command) => command.run(),
         Command::Bench(command) => command.run(),
         Command::Demo(command) => command.run(),

@@ -6,14 +6,14 @@ use crate::output;
 use crate::screen::say;
 use clap::Args;
 use condyle::picture::{self, Focus, Posed, Sheet, Show, View};
-use condyle::{Model, Motion, legal, open};
+use condyle::{Animation, Model, Motion, legal, open};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(crate) struct Render {
     /// The model: a file, or the name of a shipped one.
     model: PathBuf,
-    /// A motion whose columns are named after coordinates.
+    /// A motion whose columns are named after coordinates; by default the one that the model's file holds.
     #[arg(conflicts_with = "pose")]
     motion: Option<PathBuf>,
     /// A JSON file with a pose as `fk` takes it, or a list of them; several stand side by side.
@@ -70,17 +70,23 @@ impl Render {
             return Err(Failure::new(format!("--zoom {zoom}: give a number from 0.001 to 10000")));
         }
         sheet.focus = Focus { names: self.at.clone(), zoom: self.zoom, highlight: self.highlight };
-        let model = warned(&self.model, open::model(&self.model)?);
-        sheet.poses = self.poses(&model)?;
+        let Animation { model, motion } = warned(&self.model, open::animation(&self.model)?);
+        sheet.poses = self.poses(&model, motion)?;
         let picture = picture::draw(&model, &sheet)?;
         output::write(&self.output, &picture.png())?;
         Ok(Outcome::Done)
     }
 
     /// The poses that are drawn, legal if asked for.
-    fn poses(&self, model: &Model) -> Result<Vec<Posed>, Failure> {
+    fn poses(&self, model: &Model, own: Motion) -> Result<Vec<Posed>, Failure> {
         let (mut motion, titles) = match &self.motion {
-            Some(path) => self.frames(path, model)?,
+            Some(path) => {
+                let all = open::motion_with(path, model, self.angles.map(Into::into))?;
+                self.frames(path, model, warned(path, all))?
+            }
+            None if self.pose.is_empty() && !own.frames.is_empty() => {
+                self.frames(&self.model, model, own)?
+            }
             None => self.still(model)?,
         };
         if self.limits == Limits::On {
@@ -128,8 +134,12 @@ impl Render {
     }
 
     /// Frames of the motion.
-    fn frames(&self, path: &Path, model: &Model) -> Result<(Motion, Vec<String>), Failure> {
-        let all = warned(path, open::motion_with(path, model, self.angles.map(Into::into))?);
+    fn frames(
+        &self,
+        path: &Path,
+        model: &Model,
+        all: Motion,
+    ) -> Result<(Motion, Vec<String>), Failure> {
         let (Some(&first), Some(&last)) = (all.times.first(), all.times.last()) else {
             return Err(Failure::new(format!("{}: there are no frames in it", path.display())));
         };

@@ -24,6 +24,7 @@ mod shipped;
 #[cfg(unix)]
 mod standard_input;
 mod track;
+mod upkeep;
 
 use command::{Answer, Folder};
 use serde_json::Value;

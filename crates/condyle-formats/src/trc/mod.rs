@@ -41,4 +41,4 @@ mod read;
 mod write;
 
 pub use read::{from_bytes, read};
-pub use write::write;
+pub use write::{write, write_with_remarks};

@@ -27,6 +27,18 @@ use condyle_motion::Recording;
 /// # Ok::<(), condyle_formats::Error>(())
 /// ```
 pub fn write(recording: &Recording, name: &str) -> Result<String, Error> {
+    write_with_remarks(recording, name, &[])
+}
+
+/// As [`write`], with remarks in cells of the first line after the name of the file, where readers do not look.
+///
+/// # Errors
+/// As [`write`].
+pub fn write_with_remarks(
+    recording: &Recording,
+    name: &str,
+    remarks: &[String],
+) -> Result<String, Error> {
     if let Some(mismatch) = recording.mismatch() {
         return Err(Error::new("trc/shape", mismatch));
     }
@@ -36,11 +48,12 @@ pub fn write(recording: &Recording, name: &str) -> Result<String, Error> {
     let (frames, markers) = (recording.frames(), recording.labels.len());
     let rate = decimal(recording.rate);
     let mut text = format!(
-        "PathFileType\t4\t(X/Y/Z)\t{}\n\
+        "PathFileType\t4\t(X/Y/Z)\t{}{}\n\
          DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\t\
          OrigNumFrames\n\
          {rate}\t{rate}\t{frames}\t{markers}\t{}\t{rate}\t1\t{frames}\n",
         plain(name),
+        remarks.iter().map(|remark| format!("\t{}", plain(remark))).collect::<String>(),
         recording.units.name(),
     );
     text.push_str("Frame#\tTime");

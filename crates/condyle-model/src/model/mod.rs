@@ -140,6 +140,11 @@ impl Model {
         &self.name
     }
 
+    /// Gives the model another name, which no part of it depends on.
+    pub fn set_name(&mut self, name: &str) {
+        name.clone_into(&mut self.name);
+    }
+
     /// The axis of the world that points up.
     pub fn up(&self) -> UpAxis {
         self.up

@@ -3,6 +3,7 @@
 use super::{Cause, OpenError, failed};
 use condyle_diagnostics::Error;
 use condyle_formats::Format;
+use condyle_formats::skeleton::Assumed;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -19,6 +20,20 @@ static NAMELESS: OnceLock<&'static Format> = OnceLock::new();
 /// devices. The first call counts; without one the content tells.
 pub fn nameless_is(format: &'static Format) {
     let _ = NAMELESS.set(format);
+}
+
+/// What is known of skeletons whose files do not state it.
+static ASSUMED: OnceLock<Assumed> = OnceLock::new();
+
+/// Says what is known of all skeletons whose files do not state it; what is not said is guessed. The first
+/// call counts.
+pub fn skeletons_are(assumed: Assumed) {
+    let _ = ASSUMED.set(assumed);
+}
+
+/// What [`skeletons_are`] said.
+pub(super) fn assumed() -> Assumed {
+    ASSUMED.get().copied().unwrap_or_default()
 }
 
 /// The files that were read, once somebody asked for the list.
