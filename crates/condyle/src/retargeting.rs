@@ -8,7 +8,7 @@
 //! chest. Case, spaces and separators in names do not count, and a prefix that all bones share is left out.
 //!
 //! [`recognise`] tries the shipped tables ([`shipped::skeletons`]) and takes the one that names most parts; where none
-//! does, the tree of the bones tells ([`guess`](crate::retargeting)).
+//! does, the tree of the bones tells.
 //!
 //! What is computed, and how, is said at [`condyle_track::retarget`].
 
@@ -19,7 +19,8 @@ use condyle_diagnostics::{Diagnostic, Error};
 use condyle_formats::document::names::{self, NameTable};
 use condyle_model::Model;
 pub use condyle_track::retarget::{
-    Anchor, Body, Finger, Fit, Humanoid, Options, Part, Report, Retargeted, Side, Sliding, retarget,
+    Anchor, Body, Finger, Fit, Humanoid, Options, Part, Report, Retargeted, Side, Sliding,
+    retarget, standing,
 };
 use std::collections::HashMap;
 

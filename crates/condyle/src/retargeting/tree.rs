@@ -132,68 +132,64 @@ pub(super) fn guess(model: &Model) -> Result<Body, Error> {
         })
         .filter_map(|id| Some((id, tree.pair(id, sideways)?)))
         .max_by(|(a, _), (b, _)| tree.height(*a).total_cmp(&tree.height(*b)));
+    // Two limbs alone are no human.
+    let (chest, arms) = chest.ok_or_else(fail)?;
     let mut body = Body::default();
     body.set(model, Part::Pelvis, pelvis);
     let feet: Vec<Vec<SegmentId>> = legs.iter().map(|leg| tree.chain(*leg)).collect();
     let sides = tree.sides(&feet);
     for (chain, side) in feet.iter().zip(sides) {
-        let chain = tree.from_thigh(chain);
+        let chain = tree.leg_of(chain);
         let parts = [Part::Thigh(side), Part::Shank(side), Part::Foot(side), Part::Toes(side)];
         for (part, id) in parts.into_iter().zip(chain) {
             body.set(model, part, id);
         }
     }
-    if let Some((chest, arms)) = chest {
-        body.set(model, Part::Chest, chest);
-        for arm in arms {
-            let chain = tree.chain(arm);
-            let Some(&last) = chain.last() else { continue };
-            let nearer = |side: Side| {
-                let own = legs[sides.iter().position(|s| *s == side).unwrap_or(0)];
-                let across = tree.places[own.index()] - tree.places[pelvis.index()];
-                across.dot(tree.places[last.index()] - tree.places[chest.index()])
-            };
-            let side =
-                if nearer(Side::Right) >= nearer(Side::Left) { Side::Right } else { Side::Left };
-            let parts = [Part::UpperArm(side), Part::Forearm(side), Part::Hand(side)];
-            let (clavicle, limb) = tree.from_upper_arm(&chain);
-            if let Some(clavicle) = clavicle {
-                body.set(model, Part::Clavicle(side), clavicle);
-            }
-            for (part, id) in parts.into_iter().zip(limb) {
-                body.set(model, part, id);
-            }
+    body.set(model, Part::Chest, chest);
+    for arm in arms {
+        let chain = tree.chain(arm);
+        let Some(&last) = chain.last() else { continue };
+        let nearer = |side: Side| {
+            let own = legs[sides.iter().position(|s| *s == side).unwrap_or(0)];
+            let across = tree.places[own.index()] - tree.places[pelvis.index()];
+            across.dot(tree.places[last.index()] - tree.places[chest.index()])
+        };
+        let side = if nearer(Side::Right) >= nearer(Side::Left) { Side::Right } else { Side::Left };
+        let parts = [Part::UpperArm(side), Part::Forearm(side), Part::Hand(side)];
+        let (clavicle, limb) = tree.arm_of(&chain);
+        if let Some(clavicle) = clavicle {
+            body.set(model, Part::Clavicle(side), clavicle);
         }
-        let up: Vec<SegmentId> = tree.children[chest.index()]
-            .iter()
-            .copied()
-            .filter(|child| {
-                !arms.contains(child) && tree.highest[child.index()] > tree.height(chest)
-            })
-            .collect();
-        let neck = up
-            .into_iter()
-            .max_by(|a, b| tree.highest[a.index()].total_cmp(&tree.highest[b.index()]));
-        if let Some(neck) = neck {
-            match tree.chain(neck)[..] {
-                [head] => body.set(model, Part::Head, head),
-                [neck, head, ..] => {
-                    body.set(model, Part::Neck, neck);
-                    body.set(model, Part::Head, head);
-                }
-                [] => {}
-            }
+        for (part, id) in parts.into_iter().zip(limb) {
+            body.set(model, part, id);
         }
-        let mut spine = vec![];
-        let mut here = model.segment(chest).parent;
-        while let Some(id) = here.filter(|id| *id != pelvis) {
-            spine.push(id);
-            here = model.segment(id).parent;
-        }
-        if here == Some(pelvis) {
-            for (number, id) in spine.iter().rev().take(24).enumerate() {
-                body.set(model, Part::Spine(number as u8), *id);
+    }
+    let up: Vec<SegmentId> = tree.children[chest.index()]
+        .iter()
+        .copied()
+        .filter(|child| !arms.contains(child) && tree.highest[child.index()] > tree.height(chest))
+        .collect();
+    let neck =
+        up.into_iter().max_by(|a, b| tree.highest[a.index()].total_cmp(&tree.highest[b.index()]));
+    if let Some(neck) = neck {
+        match tree.chain(neck)[..] {
+            [head] => body.set(model, Part::Head, head),
+            [neck, head, ..] => {
+                body.set(model, Part::Neck, neck);
+                body.set(model, Part::Head, head);
             }
+            [] => {}
+        }
+    }
+    let mut spine = vec![];
+    let mut here = model.segment(chest).parent;
+    while let Some(id) = here.filter(|id| *id != pelvis) {
+        spine.push(id);
+        here = model.segment(id).parent;
+    }
+    if here == Some(pelvis) {
+        for (number, id) in spine.iter().rev().take(24).enumerate() {
+            body.set(model, Part::Spine(number as u8), *id);
         }
     }
     Ok(body)
@@ -221,12 +217,12 @@ impl Tree<'_> {
     }
 
     /// A leg without what leads to its hip: the longest two bones in a row are thigh and shank.
-    fn from_thigh(&self, chain: &[SegmentId]) -> Vec<SegmentId> {
+    fn leg_of(&self, chain: &[SegmentId]) -> Vec<SegmentId> {
         chain[self.longest_two(chain)..].to_vec()
     }
 
     /// The collar bone if there is one, and an arm.
-    fn from_upper_arm(&self, chain: &[SegmentId]) -> (Option<SegmentId>, Vec<SegmentId>) {
+    fn arm_of(&self, chain: &[SegmentId]) -> (Option<SegmentId>, Vec<SegmentId>) {
         let start = self.longest_two(chain);
         (start.checked_sub(1).map(|before| chain[before]), chain[start..].to_vec())
     }
