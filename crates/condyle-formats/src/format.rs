@@ -5,12 +5,14 @@
 
 #[cfg(feature = "document")]
 use crate::document::{self, Document, Kind, goals::GoalList, names::NameTable, setup::TrackSetup};
+#[cfg(feature = "glb")]
+use crate::glb;
 #[cfg(feature = "opensim")]
 use crate::opensim::{self, setup};
 use crate::skeleton::Assumed;
 #[cfg(feature = "document")]
 use crate::text::utf8;
-use crate::{Animation, Error, Read, Recording, Table, bvh, csv, sto, trc};
+use crate::{Animation, Error, Read, Recording, Table, bvh, c3d, csv, sto, trc};
 #[cfg(feature = "poses")]
 use crate::{
     exchange,
@@ -67,6 +69,8 @@ pub enum Content {
     Document(Document),
     /// A marker recording.
     Recording(Recording),
+    /// A marker recording with all that stands beside it.
+    Trial(Box<c3d::Trial>),
     /// A table over time.
     Table(Table),
     /// A skeleton with what it does: a model and a motion at once.
@@ -108,7 +112,7 @@ impl Content {
             Self::Model(_) => ContentKind::Model,
             #[cfg(feature = "document")]
             Self::Document(_) => ContentKind::Model,
-            Self::Recording(_) => ContentKind::Recording,
+            Self::Recording(_) | Self::Trial(_) => ContentKind::Recording,
             Self::Table(_) | Self::Animation(_) => ContentKind::Motion,
             #[cfg(feature = "poses")]
             Self::Poses(_) => ContentKind::Poses,
@@ -134,6 +138,8 @@ pub enum Id {
     OpenSim,
     /// Marker recordings.
     Trc,
+    /// Marker recordings with analog channels and events.
+    C3d,
     /// OpenSim's motions.
     Mot,
     /// OpenSim's storage files.
@@ -144,6 +150,8 @@ pub enum Id {
     Poses,
     /// Binary glTF.
     Glb,
+    /// glTF in JSON, and the files of VRM, which are GLB.
+    Gltf,
     /// Skeletons with motion of Biovision.
     Bvh,
 }
@@ -221,6 +229,18 @@ pub const FORMATS: &[Format] = &[
         read: |bytes, _| trc::from_bytes(bytes).map(|read| read.map(Content::Recording)),
     },
     Format {
+        id: Id::C3d,
+        name: "c3d",
+        title: "recordings of markers, analog channels and events",
+        endings: &["c3d"],
+        reads: &[ContentKind::Recording],
+        writes: &[ContentKind::Recording],
+        sniff: c3d::is_c3d,
+        read: |bytes, _| {
+            c3d::from_bytes(bytes).map(|read| read.map(|trial| Content::Trial(Box::new(trial))))
+        },
+    },
+    Format {
         id: Id::Mot,
         name: "mot",
         title: "OpenSim's motions, in degrees",
@@ -254,6 +274,28 @@ pub const FORMATS: &[Format] = &[
         },
         read: |bytes, _| csv::from_bytes(bytes).map(|read| read.map(Content::Table)),
     },
+    #[cfg(feature = "glb")]
+    Format {
+        id: Id::Glb,
+        name: "glb",
+        title: "binary glTF: skins, their skeletons and animations; animated scenes",
+        endings: &["glb"],
+        reads: &[ContentKind::Motion, ContentKind::Model],
+        writes: &[ContentKind::Scene],
+        sniff: |bytes| bytes.starts_with(b"glTF"),
+        read: |bytes, _| animation(glb::from_bytes(bytes)),
+    },
+    #[cfg(feature = "glb")]
+    Format {
+        id: Id::Gltf,
+        name: "gltf",
+        title: "glTF in JSON, and VRM: skins, their skeletons and animations",
+        endings: &["gltf", "vrm"],
+        reads: &[ContentKind::Motion, ContentKind::Model],
+        writes: &[],
+        sniff: glb::looks_like_json,
+        read: |bytes, _| animation(glb::from_bytes(bytes)),
+    },
     #[cfg(feature = "poses")]
     Format {
         id: Id::Poses,
@@ -277,17 +319,6 @@ pub const FORMATS: &[Format] = &[
         writes: &[],
         sniff: |bytes| starts(bytes, 64).to_ascii_lowercase().starts_with("hierarchy"),
         read: |bytes, _| animation(bvh::from_bytes(bytes)),
-    },
-    #[cfg(feature = "glb")]
-    Format {
-        id: Id::Glb,
-        name: "glb",
-        title: "binary glTF, an animated scene",
-        endings: &["glb"],
-        reads: &[],
-        writes: &[ContentKind::Scene],
-        sniff: |bytes| bytes.starts_with(b"glTF"),
-        read: |_, _| Err(Error::new("glb/not-read", "scenes are written, not read")),
     },
 ];
 
@@ -347,6 +378,11 @@ impl Format {
     ) -> Result<Read<Content>, Error> {
         match self.id {
             Id::Bvh => animation(bvh::from_bytes_with(bytes, assumed)),
+            #[cfg(feature = "glb")]
+            Id::Glb | Id::Gltf => {
+                let options = glb::Options { assumed: *assumed, ..glb::Options::default() };
+                animation(glb::read(bytes, &options, &mut |_| Err("the file is read alone".into())))
+            }
             _ => self.read(bytes, include),
         }
     }
@@ -397,6 +433,10 @@ mod tests {
             (Id::Mot, sto::write(&table).unwrap()),
             (Id::Csv, csv::write(&table).unwrap()),
             (Id::Poses, "{\"flexion\": 0.5}".to_owned()),
+            (
+                Id::Gltf,
+                "{\"nodes\": [{}], \"skins\": [{\"joints\": [0]}], \"asset\": {\"version\": \"2.0\"}}".into(),
+            ),
             (
                 Id::Bvh,
                 "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\n1\n".into(),

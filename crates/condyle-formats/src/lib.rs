@@ -5,7 +5,7 @@
 //! right. Inside, lengths are metres; a recording in millimetres is converted at the border. No
 //! input makes a reader panic, recurse, or allocate more than a small multiple of its size.
 //!
-//! Tables (TRC, STO, MOT, CSV) are always there; `document`, `glb`, `opensim` and `poses` are features.
+//! Tables (TRC, STO, MOT, CSV) and C3D are always there; `document`, `glb`, `opensim` and `poses` are features.
 //!
 //! | format | read | write |
 //! | --- | --- | --- |
@@ -14,13 +14,16 @@
 //! | STO and MOT motions | [`sto::read`] | [`sto::write`] |
 //! | poses (JSON) | [`poses::read`] | |
 //! | resolved models (JSON) | [`exchange::read`] | [`exchange::write`] |
+//! | C3D trials: markers, analog channels, events | [`c3d::from_bytes`] | [`c3d::write`] |
 //! | CSV tables | [`csv::read`] | [`csv::write`] |
 //! | OpenSim inverse kinematics setups | [`opensim::setup`] | |
 //! | BVH skeletons with motion | [`bvh::from_bytes`] | |
-//! | GLB animated scenes | | [`glb::write`] |
+//! | GLB and glTF skeletons with motion; animated scenes | [`glb::read`] | [`glb::write`] |
+//! | GLB characters of a user, given back with a new animation | | [`glb::reanimate`] |
 //! | XML, for readers of models | [`XmlDocument`] | |
 
 pub mod bvh;
+pub mod c3d;
 pub mod csv;
 
 #[cfg(feature = "document")]

@@ -5,7 +5,7 @@ use crate::scene;
 use condyle_diagnostics::{Diagnostic, Error, Read};
 #[cfg(feature = "glb")]
 use condyle_formats::glb;
-use condyle_formats::{ContentKind, Format, Id, csv, sto, trc};
+use condyle_formats::{ContentKind, Format, Id, c3d, csv, sto, trc};
 #[cfg(feature = "glb")]
 use condyle_model::Mode;
 use condyle_model::Model;
@@ -136,7 +136,27 @@ pub fn recording_with_remarks(
             markers.header.extend(remarks.iter().map(|remark| ("upkeep".into(), remark.clone())));
             table(format, &markers)
         }
+        Id::C3d => {
+            let mut trial = c3d::Trial::of(recording.clone());
+            if !remarks.is_empty() {
+                trial.parameters.set_texts("PROCESSING", "UPKEEP", remarks);
+            }
+            c3d::write(&trial)
+        }
         _ => Err(not_written(format, ContentKind::Recording)),
+    }
+}
+
+/// A trial: all of it as C3D; its markers and other points in other formats, where lengths are millimetres or, in
+/// a CSV, metres, and all other numbers as they are.
+///
+/// # Errors
+/// As [`recording`].
+pub fn trial(format: &Format, trial: &c3d::Trial, name: &str) -> Result<Vec<u8>, Error> {
+    match format.id {
+        Id::C3d => c3d::write(trial),
+        Id::Csv => table(format, &trial.to_table()),
+        _ => recording(format, &trial.all_points(), name),
     }
 }
 

@@ -11,6 +11,8 @@ use condyle_diagnostics::did_you_mean;
 use condyle_diagnostics::{Diagnostic, Error, Read, nearest};
 #[cfg(feature = "document")]
 use condyle_formats::document::{self, goals::GoalList, names::NameTable};
+#[cfg(feature = "glb")]
+use condyle_formats::glb;
 #[cfg(feature = "opensim")]
 use condyle_formats::opensim::setup::{IkSetup, IkTasks};
 #[cfg(feature = "poses")]
@@ -27,7 +29,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 pub use parts::{MotionParts, motion_parts};
-pub use source::{files_read, is_standard_input, nameless_is, skeletons_are};
+pub use source::{animation_is, files_read, is_standard_input, nameless_is, skeletons_are};
 
 /// A file that could not be used.
 #[derive(Debug)]
@@ -188,7 +190,12 @@ pub fn content_as(
     let found = named.or_else(|| Format::of_bytes(&bytes).filter(fits));
     let format = found.ok_or_else(no_format)?;
     let mut include = |name: &str| included(path, name);
-    let read = format.read_with(&bytes, &mut include, assumed).map_err(|error| {
+    let read = match format.id {
+        #[cfg(feature = "glb")]
+        Id::Glb | Id::Gltf => scene_of(path, &bytes, assumed),
+        _ => format.read_with(&bytes, &mut include, assumed),
+    };
+    let read = read.map_err(|error| {
         // Only the text of a document is shown beside its errors.
         let document = format.id == Id::Document;
         let text = document.then(|| utf8(&bytes).ok().map(str::to_owned)).flatten();
@@ -198,8 +205,10 @@ pub fn content_as(
     let mut read = with_tasks(path, read)?;
     #[cfg(not(feature = "opensim"))]
     let mut read = read;
-    if let Content::Recording(recording) = &mut read.value {
-        read.warnings.extend(recording.settle_zeros(zeros));
+    match &mut read.value {
+        Content::Recording(recording) => read.warnings.extend(recording.settle_zeros(zeros)),
+        Content::Trial(trial) => read.warnings.extend(trial.recording.settle_zeros(zeros)),
+        _ => {}
     }
     if let Content::Animation(animation) = &mut read.value
         && animation.model.name().is_empty()
@@ -216,6 +225,20 @@ pub fn content_as(
         }
         _ => Ok(read),
     }
+}
+
+/// The skeleton of a glTF file, whose buffers may be files beside it.
+#[cfg(feature = "glb")]
+fn scene_of(path: &Path, bytes: &[u8], assumed: &Assumed) -> Result<Read<Content>, Error> {
+    let options = glb::Options { animation: source::wanted_animation(), assumed: *assumed };
+    let mut other = |name: &str| {
+        source::bytes(&beside(path, name)).map_err(|error| match error.cause {
+            Cause::Io(error) => error.to_string(),
+            _ => error.to_string(),
+        })
+    };
+    let read = glb::read(bytes, &options, &mut other)?;
+    Ok(read.map(|found| Content::Animation(Box::new(found))))
 }
 
 /// A setup with the tasks that have a file of their own.
@@ -328,6 +351,7 @@ pub fn recording_with(path: &Path, zeros: Zeros) -> Result<Read<Recording>, Open
     } else {
         return only(path, ContentKind::Recording, zeros, |content| match content {
             Content::Recording(recording) => Some(recording),
+            Content::Trial(trial) => Some(trial.recording),
             _ => None,
         });
     };

@@ -1,5 +1,6 @@
 //! `condyle convert`: a file in another format.
 
+mod dropped;
 mod includes;
 mod onto;
 
@@ -9,10 +10,11 @@ use crate::motion_format as format;
 use crate::output;
 use crate::screen::say;
 use clap::{Args, ValueEnum};
+use condyle::formats::c3d::Trial;
 use condyle::formats::document::{self, Document};
 use condyle::formats::exchange;
 use condyle::formats::poses::Poses;
-use condyle::formats::{Content, ContentKind, Format, Id, trc};
+use condyle::formats::{Content, ContentKind, Format, Id, LengthUnit, Recording};
 use condyle::open::{Cause, OpenError};
 use condyle::{
     AngleUnit, Animation, Error, Interpolation, Mode, Model, Motion, Program, Table, encode, legal,
@@ -23,8 +25,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 pub(crate) struct Convert {
     /// A motion (.mot, .sto, .csv), poses (.json, as `fk` takes them), a model (.osim, .toml, a
-    /// resolved one in .json, or the name of a shipped one), a skeleton with its motion (.bvh) or a
-    /// marker recording (.trc).
+    /// resolved one in .json, or the name of a shipped one), a skeleton with its motion (.bvh, .glb, .gltf) or a
+    /// marker recording (.trc, .c3d).
     input: PathBuf,
     /// Where to write; `-` is standard output and needs --to.
     output: PathBuf,
@@ -46,6 +48,12 @@ pub(crate) struct Convert {
     /// First move coordinates to the nearest posture that the model allows.
     #[arg(long, value_enum, default_value_t = Limits::Off)]
     limits: Limits,
+    /// Of a C3D only the markers, not its angles, forces, moments and powers.
+    #[arg(long)]
+    markers_only: bool,
+    /// Of a C3D the analog channels in their own units, as a table (.csv, .mot, .sto).
+    #[arg(long, conflicts_with = "markers_only")]
+    analog: bool,
     /// The format of the output; by default that of its ending.
     #[arg(long, value_parser = format::names(&WRITTEN))]
     to: Option<String>,
@@ -73,10 +81,10 @@ const WRITTEN: [ContentKind; 4] =
 
 /// The supported conversions, for the message about any other.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
-                     to .glb (an animation) or .trc (the model's markers), and poses (.json) to all \
-                     of these, with --rate as key poses; a skeleton with its motion (.bvh) to all of these \
+                     to .glb (an animation), .trc or .c3d (the model's markers), and poses (.json) to all \
+                     of these, with --rate as key poses; a skeleton with its motion (.bvh, .glb, .gltf) to all of these \
                      without --model, and as a model; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved) or .glb; \
-                     a recording (.trc) to .trc or .csv";
+                     a recording (.trc, .c3d) to .trc, .c3d or .csv, with --analog its channels to .csv, .mot or .sto";
 
 impl Convert {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
@@ -127,7 +135,17 @@ impl Convert {
                 let name = self.output.file_name().unwrap_or_default().to_string_lossy();
                 encode::recording(target, &recording, &name)?
             }
-            Content::Recording(_) => {
+            Content::Trial(trial)
+                if self.analog && target.writes.contains(&ContentKind::Motion) =>
+            {
+                self.channels(&trial, target)?
+            }
+            Content::Trial(trial)
+                if !self.analog && target.writes.contains(&ContentKind::Recording) =>
+            {
+                self.trial(*trial, target)?
+            }
+            Content::Recording(_) | Content::Trial(_) => {
                 return Err(self.unknown(
                     target,
                     "; `condyle track MODEL TRIAL -o OUT` computes motions from recordings",
@@ -177,6 +195,32 @@ impl Convert {
             Some(name) => Ok(shipped::standalone(name)?),
             None => Ok(includes::moved(&document.text, &self.input, &self.output)),
         }
+    }
+
+    /// A trial, with what the target cannot hold named.
+    fn trial(&self, trial: Trial, target: &Format) -> Result<Vec<u8>, Failure> {
+        let name = self.output.file_name().unwrap_or_default().to_string_lossy();
+        if self.markers_only {
+            let units = LengthUnit::Millimetre;
+            let recording = Recording { units, ..trial.recording };
+            return Ok(encode::recording(target, &recording, &name)?);
+        }
+        if target.id != Id::C3d {
+            dropped::tell(&trial, target);
+        }
+        Ok(encode::trial(target, &trial, &name)?)
+    }
+
+    /// The analog channels of a trial over time.
+    fn channels(&self, trial: &Trial, target: &Format) -> Result<Vec<u8>, Failure> {
+        if trial.analog.channels.is_empty() {
+            let what = self.input.display();
+            return Err(Failure::new(format!("{what}: there are no analog channels")));
+        }
+        let start = trial.recording.times.first().copied().unwrap_or(0.0);
+        let mut table = trial.analog.to_table(start);
+        table.name = self.name();
+        Ok(encode::table(target, &table)?)
     }
 
     fn scene(&self, model: &Model, motion: &Motion) -> Result<Vec<u8>, Failure> {
@@ -271,7 +315,7 @@ impl Convert {
     ) -> Result<Vec<u8>, Failure> {
         match target.id {
             Id::Glb => return self.scene(model, &motion),
-            Id::Trc => return self.virtual_markers(model, &motion),
+            Id::Trc | Id::C3d => return self.virtual_markers(model, &motion, target),
             _ => motion.make_effective(&Program::compile(model), self.mode()),
         }
         format::encoded(target, model, &motion, &self.name(), None, &[])
@@ -299,7 +343,12 @@ impl Convert {
     }
 
     /// The model's markers along a motion, as a recording in millimetres.
-    fn virtual_markers(&self, model: &Model, motion: &Motion) -> Result<Vec<u8>, Failure> {
+    fn virtual_markers(
+        &self,
+        model: &Model,
+        motion: &Motion,
+        target: &Format,
+    ) -> Result<Vec<u8>, Failure> {
         if model.markers().is_empty() {
             return Err(Failure::new(format!(
                 "model `{}` has no markers to record: add a marker set",
@@ -315,7 +364,7 @@ impl Convert {
         let recording = motion.virtual_markers(model, self.mode());
         let recording = recording.map_err(|error| Failure::new(error.to_string()))?;
         let name = self.output.file_name().unwrap_or_default().to_string_lossy();
-        Ok(trc::write(&recording, &name)?.into_bytes())
+        Ok(encode::recording(target, &recording, &name)?)
     }
 }
 

@@ -5,6 +5,7 @@ mod network;
 mod recording;
 mod setup;
 mod table;
+mod trial;
 
 use super::{Outcome, ZerosArgument, zeros};
 use crate::failure::{Failure, warned};
@@ -36,8 +37,15 @@ impl Info {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
         let read = open::content_with(&self.file, None, zeros(self.zeros))?;
         let mut content = warned(&self.file, read);
-        if let (Content::Recording(recording), Some(subject)) = (&mut content, &self.subject) {
-            *recording = recording.of_subject(subject)?;
+        if let Some(subject) = &self.subject {
+            match &mut content {
+                Content::Recording(recording) => *recording = recording.of_subject(subject)?,
+                Content::Trial(trial) => {
+                    let recording = trial.recording.of_subject(subject)?;
+                    content = Content::Recording(recording);
+                }
+                _ => {}
+            }
         }
         if self.json {
             output::print_json(&to_json(&content))?;
@@ -54,6 +62,7 @@ fn to_json(content: &Content) -> Value {
         Content::Model(model) => model::to_json(model),
         Content::Document(document) => model::to_json(&document.model),
         Content::Recording(recording) => recording::to_json(recording),
+        Content::Trial(trial) => trial::to_json(trial),
         Content::Table(table) => table::to_json(table),
         Content::Animation(found) => json!({
             "kind": "animation",
@@ -80,6 +89,7 @@ fn to_text(content: &Content) -> String {
         Content::Model(model) => model::to_text(model),
         Content::Document(document) => model::to_text(&document.model),
         Content::Recording(recording) => recording::to_text(recording),
+        Content::Trial(trial) => trial::to_text(trial),
         Content::Table(table) => table::to_text(table),
         Content::Animation(found) => {
             let table = found.motion.to_table(&found.model, found.model.name());

@@ -32,6 +32,10 @@ pub(crate) struct Arguments {
     /// in, ft, cmu (1/0.45 inch), or metres in a unit. Without it, it is guessed by the figure's size.
     #[arg(long, global = true, value_name = "UNIT", value_parser = length_unit)]
     length_unit: Option<f64>,
+    /// Which animation is read of a file that holds several (.glb, .gltf): its name, or its number
+    /// counted from 1. Without it, the first.
+    #[arg(long, global = true, value_name = "NAME")]
+    animation: Option<String>,
     /// The axis that points up in such a file; without it, it is guessed by the figure's pose.
     #[arg(long, global = true, value_enum, value_name = "AXIS")]
     up_axis: Option<Up>,
@@ -145,6 +149,9 @@ pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
         Up::Y => UpAxis::Y,
         Up::Z => UpAxis::Z,
     });
+    if let Some(name) = &arguments.animation {
+        open::animation_is(name);
+    }
     open::skeletons_are(Assumed { metres_per_unit: arguments.length_unit, up });
     // What is read from here on is not written over.
     open::files_read();

@@ -6,7 +6,8 @@ use crate::motion_format::names;
 use crate::output;
 use crate::screen::say;
 use clap::Args;
-use condyle::formats::{Content, ContentKind, Format};
+use condyle::formats::c3d::Trial;
+use condyle::formats::{Content, ContentKind, Format, Id};
 use condyle::upkeep::{Axes, Done, Plan};
 use condyle::{Recording, Table, encode, open};
 use std::path::{Path, PathBuf};
@@ -78,6 +79,13 @@ impl Upkeep {
         output::check_distinct(&[&self.input], &[&self.output])?;
         let content =
             warned(&self.input, open::content_with(&self.input, None, zeros(self.zeros))?);
+        let (content, trial) = match content {
+            Content::Trial(mut trial) => {
+                let recording = std::mem::take(&mut trial.recording);
+                (Content::Recording(recording), Some(trial))
+            }
+            other => (other, None),
+        };
         let bytes = match content {
             Content::Table(table) => self.table(table, plan, target)?,
             Content::Recording(recording) if plan.differentiate => {
@@ -91,7 +99,7 @@ impl Upkeep {
                 let speeds = Plan { differentiate: true, ..Plan::default() };
                 self.table(table, speeds, target)?
             }
-            Content::Recording(recording) => self.recording(recording, plan, target)?,
+            Content::Recording(recording) => self.recording(recording, trial, plan, target)?,
             other => {
                 return Err(Failure::new(format!(
                     "{}: the file holds {}; upkeep takes marker recordings, motions and tables (`condyle convert` \
@@ -114,11 +122,22 @@ impl Upkeep {
     fn recording(
         &self,
         mut recording: Recording,
+        trial: Option<Box<Trial>>,
         plan: Plan,
         target: &Format,
     ) -> Result<Vec<u8>, Failure> {
+        let times = recording.times.clone();
         let done = self.done(plan.recording(&mut recording))?;
         let name = self.output.file_name().unwrap_or_default().to_string_lossy();
+        if let Some(mut trial) = trial {
+            // What stands beside the markers fits them as long as their frames and axes are the same.
+            if target.id == Id::C3d && self.axes.is_none() && recording.times == times {
+                trial.recording = recording;
+                trial.parameters.set_texts("PROCESSING", "UPKEEP", &done.steps);
+                return Ok(encode::trial(target, &trial, &name)?);
+            }
+            say("note: only the markers are written, not what else the C3D file holds");
+        }
         Ok(encode::recording_with_remarks(target, &recording, &name, &done.steps)?)
     }
 

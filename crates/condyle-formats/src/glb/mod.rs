@@ -8,12 +8,28 @@
 //! never change are omitted. Times start at 0, as glTF has no negative times; times that are not
 //! later than the one before are dropped.
 
+mod accessor;
+mod base64;
+mod bind;
+mod clip;
+mod container;
+mod figure;
+mod json;
 mod pack;
 mod place;
+mod read;
+mod reanimate;
 mod scene;
 mod skin;
+mod splice;
+mod tree;
 mod write;
 
+pub use accessor::Beside;
+pub(crate) use container::looks_like_json;
+
 pub use condyle_mesh::{Finish, Mesh};
+pub use read::{Options, from_bytes, node_motion, read};
+pub use reanimate::{NodeMotion, NodeTrack, Old, reanimate};
 pub use scene::{LocalPose, MarkerTrack, Scene, SceneNode, Surface, Track, UpAxis};
 pub use write::write;

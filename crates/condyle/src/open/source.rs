@@ -36,6 +36,20 @@ pub(super) fn assumed() -> Assumed {
     ASSUMED.get().copied().unwrap_or_default()
 }
 
+/// Which animation is read of files that hold several.
+static WANTED: OnceLock<String> = OnceLock::new();
+
+/// Says which animation is read of files that hold several: its name or its number, counted from 1; the
+/// first without it. The first call counts.
+pub fn animation_is(name: &str) {
+    let _ = WANTED.set(name.to_owned());
+}
+
+/// What [`animation_is`] said.
+pub(super) fn wanted_animation() -> Option<String> {
+    WANTED.get().cloned()
+}
+
 /// The files that were read, once somebody asked for the list.
 static LISTED: Mutex<Option<Vec<PathBuf>>> = Mutex::new(None);
 
