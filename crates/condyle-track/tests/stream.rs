@@ -95,13 +95,13 @@ fn a_stream_equals_its_frames_one_by_one_and_allocates_nothing() {
             directions: vec![DirectionTarget {
                 from: (segment(0), Vec3::ZERO),
                 to: (segment(3), Vec3::X),
-                weight: 1e-4,
+                weight: 1e-6,
                 wanted: vec![Some(Vec3::Y); 60],
             }],
             places: vec![PlaceTarget {
                 segment: segment(2),
                 point: Vec3::Z,
-                weight: 1e-3,
+                weight: 1e-7,
                 wanted: vec![Some(Vec3::X); 60],
             }],
             postures: vec![PostureTarget {
