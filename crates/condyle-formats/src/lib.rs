@@ -17,7 +17,7 @@
 //! | C3D trials: markers, analog channels, events | [`c3d::from_bytes`] | [`c3d::write`] |
 //! | CSV tables | [`csv::read`] | [`csv::write`] |
 //! | OpenSim inverse kinematics setups | [`opensim::setup`] | |
-//! | BVH skeletons with motion | [`bvh::from_bytes`] | |
+//! | BVH skeletons with motion | [`bvh::from_bytes`] | [`bvh::write`] |
 //! | GLB and glTF skeletons with motion; animated scenes | [`glb::read`] | [`glb::write`] |
 //! | GLB characters of a user, given back with a new animation | | [`glb::reanimate`] |
 //! | XML, for readers of models | [`XmlDocument`] | |

@@ -80,7 +80,8 @@ impl Frame<'_> {
         *total_weight = 0.0;
         for (i, marker) in self.tracker.markers.placed.iter().enumerate() {
             let seen = self.seen.get(i).copied().flatten().is_some();
-            weights[i] = if seen { marker.weight } else { 0.0 };
+            let factor = self.tracker.targets.marker_factor(self.index, i);
+            weights[i] = if seen { marker.weight * factor } else { 0.0 };
             *total_weight += weights[i];
         }
     }

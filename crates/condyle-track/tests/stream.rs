@@ -85,6 +85,7 @@ fn a_stream_equals_its_frames_one_by_one_and_allocates_nothing() {
     let segment = |i| model.segment_ids().nth(i).unwrap();
     for closure_weight in [None, Some(0.1)] {
         let targets = Targets {
+            marker_factors: vec![],
             markers: (0..18).map(|marker| MarkerTarget { marker, weight: 1.0 }).collect(),
             coordinates: vec![CoordinateTarget {
                 coordinate: angle(2),

@@ -59,6 +59,10 @@ use condyle_solve::least_squares::LocalModel;
 pub struct Targets {
     /// Markers, in the order of the recorded positions that are passed with each frame.
     pub markers: Vec<MarkerTarget>,
+    /// Factors on the weights of the markers, frame by frame in the order of the markers; 1 beyond their
+    /// end, so that none are needed where all positions are as sure. A marker of factor 0 is not used
+    /// in that frame.
+    pub marker_factors: Vec<f64>,
     /// Coordinates that should have a value.
     pub coordinates: Vec<CoordinateTarget>,
     /// Segments that should have an orientation.
@@ -166,6 +170,7 @@ impl Targets {
     /// where one number is asked for. Markers keep their places, with weight 0.
     pub(crate) fn clean(&mut self, model: &Model) {
         let positive = |w: f64| w > 0.0 && w.is_finite();
+        self.marker_factors.iter_mut().filter(|f| !positive(**f)).for_each(|f| *f = 0.0);
         let number = |id| model.coordinate(id).kind != CoordinateKind::Orientation;
         for target in &mut self.markers {
             if !positive(target.weight) || target.marker >= model.markers().len() {
@@ -180,6 +185,12 @@ impl Targets {
             let known = t.terms.iter().all(|&(id, factor)| factor.is_finite() && number(id));
             positive(t.stiffness) && t.rest.is_finite() && known
         });
+    }
+
+    /// The factor on the weight of a marker target in a frame.
+    pub(crate) fn marker_factor(&self, frame: usize, marker: usize) -> f64 {
+        let place = frame.checked_mul(self.markers.len()).and_then(|p| p.checked_add(marker));
+        place.and_then(|place| self.marker_factors.get(place)).copied().unwrap_or(1.0)
     }
 
     /// Whether something but markers says where the model should be; a posture only says how it holds

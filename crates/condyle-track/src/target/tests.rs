@@ -110,6 +110,7 @@ fn at_rest(seed: u64) -> (Tracker, Vec<f64>, Vec<Option<[f64; 3]>>) {
     let targets = Targets {
         directions: ends.map(line).collect(),
         places: all.iter().map(place).collect(),
+        marker_factors: vec![],
         orientations: rigid.map(oriented).collect(),
         coordinates: ids.iter().copied().map(wanted).collect(),
         markers: (0..18).map(|i| MarkerTarget { marker: i, weight: 1.0 + i as f64 }).collect(),
