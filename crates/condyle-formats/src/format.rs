@@ -225,7 +225,7 @@ pub const FORMATS: &[Format] = &[
         title: "OpenSim's models and setups",
         endings: &["osim", "xml"],
         reads: &[ContentKind::Model, ContentKind::Setup],
-        writes: &[],
+        writes: &[ContentKind::Model],
         sniff: |bytes| starts(bytes, 4096).contains("<OpenSimDocument"),
         read: |bytes, include| {
             Ok(opensim::read(bytes, include)?.map(|holding| match holding {

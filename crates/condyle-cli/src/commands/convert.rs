@@ -73,7 +73,12 @@ enum Curve {
 
 /// Whether a format holds what moves.
 fn moves(format: &Format) -> bool {
-    !matches!(format.id, Id::Document | Id::Poses)
+    !matches!(format.id, Id::Document | Id::Poses) && !of_models(format)
+}
+
+/// Whether a format of other programs holds models as trees of plain joints.
+fn of_models(format: &Format) -> bool {
+    matches!(format.id, Id::OpenSim)
 }
 
 /// What can be written.
@@ -84,7 +89,7 @@ const WRITTEN: [ContentKind; 4] =
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
                      to .glb or .bvh (an animation), .trc or .c3d (the model's markers), and poses (.json) to all \
                      of these, with --rate as key poses; a skeleton with its motion (.bvh, .glb, .gltf) to all of these \
-                     without --model, and as a model; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved), .glb or .bvh; \
+                     without --model, and as a model; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved), .glb, .bvh or .osim; \
                      a recording (.trc, .c3d) to .trc, .c3d or .csv, with --analog its channels to .csv, .mot or .sto";
 
 impl Convert {
@@ -131,6 +136,11 @@ impl Convert {
                 if target.id == Id::Glb =>
             {
                 self.scene(&model, &Motion::default())?
+            }
+            Content::Model(model) | Content::Document(Document { model, .. })
+                if of_models(target) =>
+            {
+                warned(&self.output, encode::model(target, &model)?)
             }
             Content::Model(model) | Content::Document(Document { model, .. })
                 if target.id == Id::Bvh =>
