@@ -5,10 +5,8 @@ use crate::scene;
 use condyle_diagnostics::{Diagnostic, Error, Read};
 #[cfg(feature = "glb")]
 use condyle_formats::glb;
-use condyle_formats::{ContentKind, Format, Id, c3d, csv, sto, trc};
-#[cfg(feature = "glb")]
-use condyle_model::Mode;
-use condyle_model::Model;
+use condyle_formats::{ContentKind, Format, Id, bvh, c3d, csv, sto, trc};
+use condyle_model::{Mode, Model};
 use condyle_motion::{AngleUnit, Motion, Recording, Table};
 
 /// A motion of a model: a table in degrees, a CSV in radians and metres, or a scene of plain bones in
@@ -32,6 +30,7 @@ pub fn motion(
     match format.id {
         #[cfg(feature = "glb")]
         Id::Glb => scene(model, motion, Mode::Open, markers),
+        Id::Bvh => skeleton(format, model, motion, Mode::Open, bvh::USUAL_UNIT),
         _ => {
             let table = motion_table(format, model, motion, name, remarks);
             self::table(format, &table).map(Read::clean)
@@ -97,6 +96,38 @@ pub fn scene(
 ) -> Result<Read<Vec<u8>>, Error> {
     let Read { value, warnings } = scene::baked(model, motion, mode, markers);
     Ok(Read { value: glb::write(&value)?, warnings })
+}
+
+/// A model in the text of another program, with what was fitted, dropped or turned into something else.
+///
+/// # Errors
+/// `format/not-written` if models are not written in this format.
+pub fn model(format: &Format, model: &Model) -> Result<Read<Vec<u8>>, Error> {
+    match format.id {
+        #[cfg(feature = "opensim")]
+        Id::OpenSim => Ok(condyle_formats::opensim::write(model).map(String::into_bytes)),
+        _ => {
+            let _ = model;
+            Err(not_written(format, ContentKind::Model))
+        }
+    }
+}
+
+/// A motion as a skeleton of plain bones that moves, with so many metres in a unit. Limits are applied here.
+///
+/// # Errors
+/// `format/not-written` if skeletons are not written in this format; what the writer finds wrong.
+pub fn skeleton(
+    format: &Format,
+    model: &Model,
+    motion: &Motion,
+    mode: Mode,
+    metres_per_unit: f64,
+) -> Result<Read<Vec<u8>>, Error> {
+    match format.id {
+        Id::Bvh => Ok(bvh::write(model, motion, mode, metres_per_unit)?.map(String::into_bytes)),
+        _ => Err(not_written(format, ContentKind::Scene)),
+    }
 }
 
 /// A table, number by number.

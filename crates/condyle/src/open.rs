@@ -29,7 +29,9 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 pub use parts::{MotionParts, motion_parts};
-pub use source::{animation_is, files_read, is_standard_input, nameless_is, skeletons_are};
+pub use source::{
+    animation_is, assumed, files_read, is_standard_input, nameless_is, skeletons_are,
+};
 
 /// A file that could not be used.
 #[derive(Debug)]

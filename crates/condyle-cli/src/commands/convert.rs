@@ -2,6 +2,7 @@
 
 mod dropped;
 mod includes;
+mod onto;
 
 use super::{Angles, Limits, Outcome};
 use crate::failure::{Failure, warn_about, warned};
@@ -9,6 +10,7 @@ use crate::motion_format as format;
 use crate::output;
 use crate::screen::say;
 use clap::{Args, ValueEnum};
+use condyle::formats::bvh;
 use condyle::formats::c3d::Trial;
 use condyle::formats::document::{self, Document};
 use condyle::formats::exchange;
@@ -31,8 +33,8 @@ pub(crate) struct Convert {
     output: PathBuf,
     /// The model that a motion belongs to: a file, or the name of a shipped one.
     ///
-    /// With it a motion can be baked to .glb: plain bones, each with its translation, rotation and
-    /// scale in its parent at every frame, for programs without joint sets.
+    /// With it a motion can be baked to .glb and .bvh: plain bones, each with its translation, rotation and
+    /// (in .glb) scale in its parent at every frame, for programs without joint sets.
     #[arg(long, value_name = "M")]
     model: Option<PathBuf>,
     /// The unit of angles in a motion that does not state it; without it, it is guessed by their size.
@@ -56,6 +58,8 @@ pub(crate) struct Convert {
     /// The format of the output; by default that of its ending.
     #[arg(long, value_parser = format::names(&WRITTEN))]
     to: Option<String>,
+    #[command(flatten)]
+    onto: onto::Onto,
 }
 
 /// How coordinates of one number go from key pose to key pose.
@@ -69,7 +73,12 @@ enum Curve {
 
 /// Whether a format holds what moves.
 fn moves(format: &Format) -> bool {
-    !matches!(format.id, Id::Document | Id::Poses)
+    !matches!(format.id, Id::Document | Id::Poses) && !of_models(format)
+}
+
+/// Whether a format of other programs holds models as trees of plain joints.
+fn of_models(format: &Format) -> bool {
+    matches!(format.id, Id::OpenSim)
 }
 
 /// What can be written.
@@ -78,16 +87,20 @@ const WRITTEN: [ContentKind; 4] =
 
 /// The supported conversions, for the message about any other.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
-                     to .glb (an animation), .trc or .c3d (the model's markers), and poses (.json) to all \
+                     to .glb or .bvh (an animation), .trc or .c3d (the model's markers), and poses (.json) to all \
                      of these, with --rate as key poses; a skeleton with its motion (.bvh, .glb, .gltf) to all of these \
-                     without --model, and as a model; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved) or .glb; \
+                     without --model, and as a model; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved), .glb, .bvh or .osim; \
                      a recording (.trc, .c3d) to .trc, .c3d or .csv, with --analog its channels to .csv, .mot or .sto";
 
 impl Convert {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
         let target = self.target()?;
-        let inputs: Vec<&Path> =
-            [&self.input].into_iter().chain(&self.model).map(PathBuf::as_path).collect();
+        let inputs: Vec<&Path> = [&self.input]
+            .into_iter()
+            .chain(&self.model)
+            .chain(self.onto.inputs())
+            .map(PathBuf::as_path)
+            .collect();
         output::check_distinct(&inputs, &[&self.output])?;
         let read = match open::content(&self.input, None) {
             Err(error) if matches!(error.cause, Cause::Format { .. }) => {
@@ -123,6 +136,16 @@ impl Convert {
                 if target.id == Id::Glb =>
             {
                 self.scene(&model, &Motion::default())?
+            }
+            Content::Model(model) | Content::Document(Document { model, .. })
+                if of_models(target) =>
+            {
+                warned(&self.output, encode::model(target, &model)?)
+            }
+            Content::Model(model) | Content::Document(Document { model, .. })
+                if target.id == Id::Bvh =>
+            {
+                self.skeleton(target, &model, &Motion::default())?
             }
             Content::Recording(recording) if target.writes.contains(&ContentKind::Recording) => {
                 let name = self.output.file_name().unwrap_or_default().to_string_lossy();
@@ -220,6 +243,21 @@ impl Convert {
         Ok(warned(&self.output, encode::scene(model, motion, self.mode(), None)?))
     }
 
+    /// A skeleton in the unit that is told, else in centimetres.
+    fn skeleton(
+        &self,
+        target: &Format,
+        model: &Model,
+        motion: &Motion,
+    ) -> Result<Vec<u8>, Failure> {
+        let unit = open::assumed().metres_per_unit;
+        if unit.is_none() {
+            say(&format!("note: {}: lengths are in cm (--length-unit)", self.output.display()));
+        }
+        let unit = unit.unwrap_or(bvh::USUAL_UNIT);
+        Ok(warned(&self.output, encode::skeleton(target, model, motion, self.mode(), unit)?))
+    }
+
     fn motion_as(&self, moving: Moving, target: &Format) -> Result<Vec<u8>, Failure> {
         let Some(model_path) = &self.model else {
             let what = format!("{}: without --model", self.input.display());
@@ -268,13 +306,18 @@ impl Convert {
         }
     }
 
-    /// A motion of a model in another format, legal if asked for.
+    /// A motion of a model, or what it is for another figure, in another format, legal if asked for.
     fn moved(
         &self,
         model: &Model,
         mut motion: Motion,
         target: &Format,
     ) -> Result<Vec<u8>, Failure> {
+        if let Some((onto, carried)) =
+            self.onto.carried(&self.input, model, &motion, self.limits)?
+        {
+            return self.written(&onto, carried, target);
+        }
         if self.limits == Limits::On {
             let legal::Kept { solved, lost } = legal::keep(model, &mut motion);
             let all = motion.frames.len();
@@ -291,8 +334,19 @@ impl Convert {
                 ));
             }
         }
+        self.written(model, motion, target)
+    }
+
+    /// A motion of a model in another format.
+    fn written(
+        &self,
+        model: &Model,
+        mut motion: Motion,
+        target: &Format,
+    ) -> Result<Vec<u8>, Failure> {
         match target.id {
             Id::Glb => return self.scene(model, &motion),
+            Id::Bvh => return self.skeleton(target, model, &motion),
             Id::Trc | Id::C3d => return self.virtual_markers(model, &motion, target),
             _ => motion.make_effective(&Program::compile(model), self.mode()),
         }

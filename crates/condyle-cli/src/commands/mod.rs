@@ -29,7 +29,8 @@ pub(crate) struct Arguments {
     #[arg(long, global = true, value_name = "FORMAT", value_parser = formats())]
     from: Option<String>,
     /// The unit of lengths in a file that holds a skeleton and does not state it, such as a .bvh: m, cm, mm,
-    /// in, ft, cmu (1/0.45 inch), or metres in a unit. Without it, it is guessed by the figure's size.
+    /// in, ft, cmu (1/0.45 inch), or metres in a unit. Without it, it is guessed by the figure's size, and
+    /// written are cm.
     #[arg(long, global = true, value_name = "UNIT", value_parser = length_unit)]
     length_unit: Option<f64>,
     /// Which animation is read of a file that holds several (.glb, .gltf): its name, or its number

@@ -27,9 +27,19 @@
 //! no finite number; rows that are broken into several lines are put together. A frame time that is missing
 //! or no positive number is taken to be 1/30 s, one of ten and more to be frames per second. Each of these
 //! comes with a warning.
+//!
+//! What is written: bones are turned and placed in their parents as [`PlainBones`](crate::skeleton::PlainBones)
+//! has them. A joint of turns about its own axes in the file's manner, such as one that was read from such a
+//! file, keeps its channels and their values. Any other joint has three angles in the order, of the six, that
+//! stays farthest from where two of its axes meet, and each angle goes on from that of the frame before
+//! without a jump by a whole turn. Roots and joints whose centres move have positions. Sizes and shears
+//! are left out, with the warning `skeleton/strain`. Lengths are centimetres unless another unit is asked for.
 
+mod angles;
 mod hierarchy;
 mod read;
 mod rows;
+mod write;
 
 pub use read::{from_bytes, from_bytes_with};
+pub use write::{USUAL_UNIT, write};

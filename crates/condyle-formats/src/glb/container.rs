@@ -93,6 +93,23 @@ impl Container {
     }
 }
 
+impl Container {
+    /// The kind and bytes of all chunks that are neither JSON nor binary.
+    pub(super) fn others<'b>(&self, bytes: &'b [u8]) -> Vec<(&'b [u8], &'b [u8])> {
+        let mut found = vec![];
+        let mut at = if self.is_binary { HEADER } else { bytes.len() };
+        while let (Some(length), Some(kind)) = (word(bytes, at), bytes.get(at + 4..at + 8)) {
+            let end = (at + 8).saturating_add(length as usize);
+            let known = [&b"JSON"[..], b"BIN\0"].contains(&kind);
+            if let Some(part) = bytes.get(at + 8..end).filter(|_| !known) {
+                found.push((kind, part));
+            }
+            at = end;
+        }
+        found
+    }
+}
+
 /// Whether bytes look like glTF in JSON: an object that has an asset near its beginning or its end.
 pub(crate) fn looks_like_json(bytes: &[u8]) -> bool {
     const NEAR: usize = 1 << 16;

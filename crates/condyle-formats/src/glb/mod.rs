@@ -13,12 +13,15 @@ mod base64;
 mod bind;
 mod clip;
 mod container;
+mod figure;
 mod json;
 mod pack;
 mod place;
 mod read;
+mod reanimate;
 mod scene;
 mod skin;
+mod splice;
 mod tree;
 mod write;
 
@@ -26,6 +29,7 @@ pub use accessor::Beside;
 pub(crate) use container::looks_like_json;
 
 pub use condyle_mesh::{Finish, Mesh};
-pub use read::{Options, from_bytes, read};
+pub use read::{Options, from_bytes, node_motion, read};
+pub use reanimate::{NodeMotion, NodeTrack, Old, reanimate};
 pub use scene::{LocalPose, MarkerTrack, Scene, SceneNode, Surface, Track, UpAxis};
 pub use write::write;

@@ -1,16 +1,8 @@
 //! The transform of a node that is nearest to an affine transform.
-//!
-//! A node of glTF is placed by a translation T, a rotation R and a scale S along each of its own
-//! axes, as T·R·S. Of a linear map L the polar decomposition L = Q·P gives the rotation Q that is
-//! nearest to it and a symmetric stretch P (Higham 1986, *Computing the polar decomposition*). R is
-//! Q and S the diagonal of P, which is exact where L stretches along the node's axes alone. What
-//! is off the diagonal is a shear, which a node cannot hold.
 
 use super::scene::LocalPose;
-use condyle_math::{Affine, Mat3, Quat, Vec3};
-
-/// The maximum number of iterations for the rotation; about ten suffice.
-const ROUNDS: usize = 40;
+use crate::skeleton::Place;
+use condyle_math::Affine;
 
 impl LocalPose {
     /// The node transform nearest to an affine transform, and the shear that it omits.
@@ -32,56 +24,28 @@ impl LocalPose {
     /// assert!(shear < 1e-15);
     /// ```
     pub fn nearest(local: Affine) -> (Self, f64) {
-        let linear = local.linear;
-        let translation = local.translation.to_array();
-        let square = linear.transpose() * linear;
-        if norm(difference(square, Mat3::IDENTITY)) < 1e-12 && linear.determinant() > 0.0 {
-            let rotation = Quat::from_mat3(linear).to_array();
-            return (Self { translation, rotation, scale: [1.0; 3] }, 0.0);
-        }
-        let rotation = rotation_of(linear);
-        let stretch = rotation.transpose() * linear;
-        let scale = Vec3::new(stretch.x.x, stretch.y.y, stretch.z.z);
-        let held =
-            Mat3::from_columns(rotation.x * scale.x, rotation.y * scale.y, rotation.z * scale.z);
-        let rotation = Quat::from_mat3(rotation).to_array();
-        let shear = norm(difference(linear, held));
-        (Self { translation, rotation, scale: scale.to_array() }, shear)
+        let (place, shear) = Place::nearest(local);
+        let own = Self {
+            translation: place.translation.to_array(),
+            rotation: place.rotation.to_array(),
+            scale: place.scale.to_array(),
+        };
+        (own, shear)
     }
-}
-
-/// The rotation of a linear map by Newton's iteration X ← (g·X + (g·X)⁻ᵀ)/2 with Higham's factor g;
-/// for a reflection that of its negative, for a singular map the identity.
-fn rotation_of(linear: Mat3) -> Mat3 {
-    let mut x = linear;
-    for _ in 0..ROUNDS {
-        let other = x.inverse().transpose();
-        let factor = (norm(other) / norm(x)).sqrt();
-        if !factor.is_normal() {
-            return Mat3::IDENTITY;
-        }
-        let mean = |a: Vec3, b: Vec3| (a * factor + b * (1.0 / factor)) * 0.5;
-        let next = Mat3::from_columns(mean(x.x, other.x), mean(x.y, other.y), mean(x.z, other.z));
-        let step = norm(difference(next, x));
-        x = next;
-        if step < 1e-14 {
-            break;
-        }
-    }
-    if x.determinant() < 0.0 { Mat3::from_columns(-x.x, -x.y, -x.z) } else { x }
-}
-
-fn difference(a: Mat3, b: Mat3) -> Mat3 {
-    Mat3::from_columns(a.x - b.x, a.y - b.y, a.z - b.z)
-}
-
-fn norm(m: Mat3) -> f64 {
-    (m.x.dot(m.x) + m.y.dot(m.y) + m.z.dot(m.z)).sqrt()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use condyle_math::{Mat3, Quat, Vec3};
+
+    fn difference(a: Mat3, b: Mat3) -> Mat3 {
+        Mat3::from_columns(a.x - b.x, a.y - b.y, a.z - b.z)
+    }
+
+    fn norm(m: Mat3) -> f64 {
+        (m.x.dot(m.x) + m.y.dot(m.y) + m.z.dot(m.z)).sqrt()
+    }
 
     fn turned(place: &LocalPose) -> Mat3 {
         let [sx, sy, sz] = place.scale;

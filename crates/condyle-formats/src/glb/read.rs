@@ -2,16 +2,14 @@
 
 use super::accessor::{Accessors, Beside};
 use super::bind::Bound;
-use super::clip::{Clip, Path};
+use super::clip::Clip;
 use super::container::Container;
+use super::figure::Figure;
 use super::json::{self, Item};
-use super::scene::LocalPose;
+use super::reanimate::NodeMotion;
 use super::tree::Tree;
-use crate::skeleton::{Assumed, Bone, Freedom, FreedomKind, Skeleton, UnitGuess, facing_of};
+use crate::skeleton::Assumed;
 use condyle_diagnostics::{Diagnostic, Error, Read, Warnings, did_you_mean};
-use condyle_math::{Affine, Quat, Vec3};
-use condyle_model::UpAxis;
-use condyle_model::model::Facing;
 use condyle_motion::{Animation, Motion};
 
 /// What of a file is read.
@@ -81,32 +79,68 @@ pub fn read(
     beside: &mut Beside<'_>,
 ) -> Result<Read<Animation>, Error> {
     let mut warnings = Warnings::default();
-    let container = Container::find(bytes, &mut warnings)?;
+    let Parts { tree, bound, clip, figure } = parts(bytes, options, beside, &mut warnings)?;
+    let motion = figure.motion(&tree, &bound, &clip, bytes.len(), &mut warnings);
+    let Read { value: model, warnings: told } = figure.skeleton.build()?;
+    warnings.extend(told);
+    Ok(Read { value: Animation { model, motion }, warnings: warnings.finish() })
+}
+
+/// A motion of the model that [`read`] gives for these bytes and options, as transforms of the file's own nodes, in its own
+/// units: what [`reanimate`](super::reanimate) takes.
+///
+/// Every frame of `motion` has the numbers of that model. Nodes that stay where they stand in the file have no track.
+///
+/// # Errors
+/// As [`read`]; `glb/track` if a frame has not the numbers of the model.
+pub fn node_motion(
+    bytes: &[u8],
+    options: &Options,
+    beside: &mut Beside<'_>,
+    motion: &Motion,
+) -> Result<NodeMotion, Error> {
+    let Parts { tree, bound, figure, .. } =
+        parts(bytes, options, beside, &mut Warnings::default())?;
+    figure.tracks(&tree, &bound, motion)
+}
+
+/// What a file consists of.
+struct Parts {
+    tree: Tree,
+    bound: Bound,
+    clip: Clip,
+    figure: Figure,
+}
+
+fn parts(
+    bytes: &[u8],
+    options: &Options,
+    beside: &mut Beside<'_>,
+    warnings: &mut Warnings,
+) -> Result<Parts, Error> {
+    let container = Container::find(bytes, warnings)?;
     let value = json::parse(bytes.get(container.json.clone()).unwrap_or_default())?;
     let root = Item::root(&value);
     check_version(&root)?;
     let binary = container.binary.and_then(|range| bytes.get(range));
     let mut accessors = Accessors::new(&value, binary, beside, bytes.len());
-    let tree = Tree::read(&root, &mut warnings)?;
-    let bound = Bound::read(&root, &tree, &mut accessors, &mut warnings)?;
-    let chosen = chosen(&root, options, &mut warnings)?;
+    let tree = Tree::read(&root, warnings)?;
+    let bound = Bound::read(&root, &tree, &mut accessors, warnings)?;
+    let chosen = chosen(&root, options, warnings)?;
     if chosen.is_none() && !bound.joint.contains(&true) {
         let message = "the file has neither a skin nor an animation";
         return Err(Error::new("glb/no-skeleton", message)
             .with_help("a figure that moves is read, not a still scene"));
     }
     let clip = match &chosen {
-        Some(item) => Clip::read(item, tree.nodes.len(), &mut accessors, &mut warnings)?,
+        Some(item) => Clip::read(item, tree.nodes.len(), &mut accessors, warnings)?,
         None => Clip::default(),
     };
     let named = chosen.as_ref().and_then(|item| item.text("name")).filter(|name| !name.is_empty());
-    let mut figure = Figure::new(&tree, &bound, &clip, &mut warnings);
+    let mut figure = Figure::new(&tree, &bound, &clip, warnings);
     figure.skeleton.name = name(&root, &tree, &bound).or(named).unwrap_or("figure").to_owned();
-    let unit = figure.settle_unit(&options.assumed, &mut warnings);
-    let motion = figure.motion(&tree, &bound, &clip, unit, bytes.len(), &mut warnings);
-    let Read { value: model, warnings: told } = figure.skeleton.build()?;
-    warnings.extend(told);
-    Ok(Read { value: Animation { model, motion }, warnings: warnings.finish() })
+    figure.settle_unit(&options.assumed, warnings);
+    Ok(Parts { tree, bound, clip, figure })
 }
 
 fn check_version(root: &Item<'_>) -> Result<(), Error> {
@@ -167,252 +201,4 @@ fn name<'j>(root: &Item<'j>, tree: &'j Tree, bound: &Bound) -> Option<&'j str> {
         Some(tree.nodes[parent].name.as_str()).filter(|name| !name.starts_with("node_"))
     };
     skin.filter(|name| !name.trim().is_empty()).or_else(above)
-}
-
-/// How one node moves.
-#[derive(Clone, Copy, Debug, Default)]
-struct Moved {
-    places: bool,
-    turns: bool,
-    sizes: bool,
-}
-
-/// The bones and what they are made from.
-struct Figure {
-    skeleton: Skeleton,
-    /// The node of each bone.
-    nodes: Vec<usize>,
-    moved: Vec<Moved>,
-    /// What lengths in the parent of each bone are multiplied by.
-    factors: Vec<f64>,
-}
-
-impl Figure {
-    fn new(tree: &Tree, bound: &Bound, clip: &Clip, warnings: &mut Warnings) -> Self {
-        let count = tree.nodes.len();
-        // Values that channels hold throughout.
-        let mut still: Vec<LocalPose> = tree.nodes.iter().map(|node| node.local).collect();
-        clip.pose(f64::NEG_INFINITY, &mut still);
-        let mut moved = vec![Moved::default(); count];
-        let mut animated = vec![false; count];
-        for channel in &clip.channels {
-            let moves = !channel.is_still();
-            animated[channel.node] = true;
-            let of = &mut moved[channel.node];
-            match channel.path {
-                Path::Translation => of.places |= moves,
-                Path::Rotation => of.turns |= moves,
-                Path::Scale => of.sizes |= moves,
-            }
-        }
-        let chosen = chosen_nodes(tree, &bound.joint, &animated, warnings);
-        let (mut bone_of, mut factor_below) = (vec![None; count], vec![1.0; count]);
-        let mut figure =
-            Self { skeleton: Skeleton::default(), nodes: vec![], moved: vec![], factors: vec![] };
-        let mut scaled: Option<(usize, f64)> = None;
-        for &index in tree.order.iter().filter(|index| chosen[**index]) {
-            let node = &tree.nodes[index];
-            let (rest, now) = (bound.rest[index], still[index]);
-            let factor = node.parent.map_or(1.0, |parent| factor_below[parent]);
-            let mut of = moved[index];
-            of.places |= far(now.translation, rest.translation);
-            let turn = Quat::from(now.rotation).angle_to(Quat::from(rest.rotation));
-            of.turns |= bound.joint[index] || turn > 1e-6;
-            let [x, y, z] = now.scale;
-            let uniform = x > 0.0 && (x - y).abs().max((x - z).abs()) <= 1e-5 * x;
-            if !of.sizes && uniform {
-                let own = (x + y + z) / 3.0;
-                let own = if (own - 1.0).abs() < 1e-5 { 1.0 } else { own };
-                factor_below[index] = factor * own;
-                if own != 1.0 {
-                    scaled = scaled.or(Some((index, own)));
-                }
-            } else {
-                of.sizes = true;
-                factor_below[index] = factor;
-            }
-            let linear = Quat::from(rest.rotation).to_mat3();
-            let joint = Affine::new(linear, Vec3::from(rest.translation) * factor);
-            let parent = node.parent.and_then(|parent| bone_of[parent]);
-            let mut bone =
-                Bone { joint_in_parent: joint, ..Bone::at(&node.name, parent, Vec3::ZERO) };
-            bone.freedoms = freedoms(of, now.scale);
-            bone_of[index] = Some(figure.nodes.len());
-            figure.skeleton.bones.push(bone);
-            figure.nodes.push(index);
-            figure.moved.push(of);
-            figure.factors.push(factor);
-        }
-        add_ends(&mut figure.skeleton, tree, &bone_of, &factor_below);
-        if let Some((index, own)) = scaled {
-            let message = format!("node `{}` has a scale of {own:.6}", tree.nodes[index].name);
-            warnings.push(
-                Diagnostic::warning("glb/scale", message)
-                    .with_help("the lengths below it are multiplied by it, the bones are rigid"),
-            );
-        }
-        figure
-    }
-
-    /// Lengths become metres; by what they are multiplied.
-    fn settle_unit(&mut self, assumed: &Assumed, warnings: &mut Warnings) -> f64 {
-        let rest = self.skeleton.rest();
-        let points = rest.iter().flat_map(|(_, joint, ends)| ends.iter().copied().chain([*joint]));
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for (axis, x) in points.flat_map(|point| point.to_array().into_iter().enumerate()) {
-            low[axis] = low[axis].min(x);
-            high[axis] = high[axis].max(x);
-        }
-        let size = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
-        let guess = UnitGuess::of(size);
-        let people = self.nodes.len() >= 10 && guess.fits && ["cm", "mm"].contains(&guess.name);
-        let unit = match assumed.metres_per_unit {
-            Some(unit) => unit,
-            None if people => {
-                let message = format!(
-                    "the figure would be {size:.0} m large, which is the size of a person in {}",
-                    guess.name
-                );
-                let help = "read so, though glTF is in metres; --length-unit m keeps its size";
-                warnings.push(Diagnostic::warning("skeleton/unit", message).with_help(help));
-                guess.metres
-            }
-            None => 1.0,
-        };
-        let joints: Vec<(&str, Vec3)> = rest.iter().map(|(name, at, _)| (*name, *at)).collect();
-        let facing = facing_of(&joints, UpAxis::Y).unwrap_or(Facing::PlusZ);
-        self.skeleton.facing = facing;
-        for bone in &mut self.skeleton.bones {
-            bone.joint_in_parent.translation = bone.joint_in_parent.translation * unit;
-            bone.ends.iter_mut().for_each(|end| end.1 = end.1 * unit);
-        }
-        unit
-    }
-
-    /// The frames: for each bone where it is beside its rest.
-    fn motion(
-        &self,
-        tree: &Tree,
-        bound: &Bound,
-        clip: &Clip,
-        unit: f64,
-        size: usize,
-        warnings: &mut Warnings,
-    ) -> Motion {
-        let freedoms = self.skeleton.bones.iter().flat_map(|bone| &bone.freedoms);
-        let stored: usize = freedoms.map(Freedom::stored).sum();
-        // Three times the size of the file and 24 MB.
-        let most = (3 * size + (24 << 20)) / (8 * stored + 48);
-        let mut times = clip.times(most.max(2), warnings);
-        let nodes: Vec<LocalPose> = tree.nodes.iter().map(|node| node.local).collect();
-        if times.is_empty()
-            && self.moved.iter().zip(&self.nodes).any(|(of, node)| {
-                let (now, rest) = (nodes[*node], bound.rest[*node]);
-                let turn = Quat::from(now.rotation).angle_to(Quat::from(rest.rotation));
-                of.places || turn > 1e-6
-            })
-        {
-            // A still figure that does not stand at its rest.
-            times.push(0.0);
-        }
-        let mut frames: Vec<Vec<f64>> = Vec::with_capacity(times.len());
-        let mut last = vec![Quat::IDENTITY; self.nodes.len()];
-        let mut locals = nodes;
-        for &time in &times {
-            clip.pose(time, &mut locals);
-            let mut frame = Vec::with_capacity(stored);
-            for (bone, &node) in self.nodes.iter().enumerate() {
-                let (now, rest, of) = (&locals[node], &bound.rest[node], self.moved[bone]);
-                let back = Quat::from(rest.rotation).conjugate();
-                if of.places {
-                    let step = Vec3::from(now.translation) - Vec3::from(rest.translation);
-                    let step = back.to_mat3() * step * (self.factors[bone] * unit);
-                    frame.extend(step.to_array());
-                }
-                if of.turns {
-                    let turn = (back * Quat::from(now.rotation)).normalized();
-                    // Signs never jump.
-                    let turn = if turn.dot(last[bone]) < 0.0 { -turn } else { turn };
-                    last[bone] = turn;
-                    frame.extend(turn.to_array());
-                }
-                if of.sizes {
-                    frame.extend(now.scale);
-                }
-            }
-            frames.push(frame);
-        }
-        Motion { times, frames }
-    }
-}
-
-/// Whether places differ by more than single precision can tell.
-fn far(a: [f64; 3], b: [f64; 3]) -> bool {
-    let size = b.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    a.iter().zip(b).any(|(a, b)| (a - b).abs() > 5e-6 * size + 1e-7)
-}
-
-fn freedoms(of: Moved, scale: [f64; 3]) -> Vec<Freedom> {
-    let mut freedoms = vec![];
-    if of.places {
-        freedoms.extend(Vec3::UNITS.map(|axis| Freedom::new(FreedomKind::Move(axis))));
-    }
-    if of.turns {
-        freedoms.push(Freedom::new(FreedomKind::Ball));
-    }
-    if of.sizes {
-        freedoms.extend(Vec3::UNITS.iter().zip(scale).map(|(axis, size)| Freedom {
-            default: [size, 0.0, 0.0, 0.0],
-            ..Freedom::new(FreedomKind::Size(*axis))
-        }));
-    }
-    freedoms
-}
-
-/// The joints, what they hang on, and what moves below them; without joints, what moves.
-fn chosen_nodes(
-    tree: &Tree,
-    joint: &[bool],
-    animated: &[bool],
-    warnings: &mut Warnings,
-) -> Vec<bool> {
-    let skinned = joint.contains(&true);
-    let mut below = joint.to_vec();
-    for &index in &tree.order {
-        below[index] |= tree.nodes[index].parent.is_some_and(|parent| below[parent]);
-    }
-    let count = tree.nodes.len();
-    let mut chosen: Vec<bool> =
-        (0..count).map(|i| joint[i] || animated[i] && (below[i] || !skinned)).collect();
-    for &index in tree.order.iter().rev() {
-        if let (true, Some(parent)) = (chosen[index], tree.nodes[index].parent) {
-            chosen[parent] = true;
-        }
-    }
-    let left: Vec<String> = (0..count)
-        .filter(|index| animated[*index] && !chosen[*index])
-        .map(|index| tree.nodes[index].name.clone())
-        .collect();
-    if !left.is_empty() {
-        let message = format!(
-            "what moves beside the skeleton is not read: {}",
-            condyle_diagnostics::listed(&left)
-        );
-        warnings.push(Diagnostic::warning("glb/left-out", message));
-    }
-    chosen
-}
-
-/// Nodes that only say where a bone ends: without children, and showing nothing.
-fn add_ends(skeleton: &mut Skeleton, tree: &Tree, bone_of: &[Option<usize>], factors: &[f64]) {
-    let mut leaf = vec![true; tree.nodes.len()];
-    tree.nodes.iter().filter_map(|node| node.parent).for_each(|parent| leaf[parent] = false);
-    for (index, node) in tree.nodes.iter().enumerate() {
-        let Some(parent) = node.parent.filter(|_| leaf[index] && !node.shows) else { continue };
-        let bone = bone_of[parent].filter(|_| bone_of[index].is_none());
-        if let Some(bone) = bone.and_then(|bone| skeleton.bones.get_mut(bone)) {
-            let point = Vec3::from(node.local.translation) * factors[parent];
-            bone.ends.push((node.name.clone(), point));
-        }
-    }
 }

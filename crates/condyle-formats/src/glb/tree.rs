@@ -2,6 +2,7 @@
 
 use super::json::Item;
 use super::scene::LocalPose;
+use crate::text::distinct;
 use condyle_diagnostics::{Diagnostic, Error, Warnings};
 use condyle_math::{Affine, Mat3, Quat, Vec3};
 
@@ -65,6 +66,19 @@ impl Tree {
             }
         }
         let order = order(&nodes)?;
+        let names = names(root, &nodes)?;
+        for (node, name) in nodes.iter_mut().zip(names) {
+            if node.name != name {
+                warnings.add("skeleton/name", || {
+                    let message = format!(
+                        "two nodes are called `{}`: the second is called `{name}`",
+                        node.name
+                    );
+                    Diagnostic::warning("skeleton/name", message)
+                });
+                node.name = name;
+            }
+        }
         Ok(Self { nodes, order })
     }
 
@@ -78,6 +92,26 @@ impl Tree {
         }
         world
     }
+}
+
+/// Names of which no two are the same. Joints have theirs before others: which nodes are read must not matter.
+fn names(root: &Item<'_>, nodes: &[TreeNode]) -> Result<Vec<String>, Error> {
+    let mut joint = vec![false; nodes.len()];
+    for skin in root.list("skins")? {
+        for item in skin.list("joints")? {
+            if let Some(joint) = item.index().ok().and_then(|index| joint.get_mut(index)) {
+                *joint = true;
+            }
+        }
+    }
+    let mut first: Vec<usize> = (0..nodes.len()).collect();
+    first.sort_by_key(|index| !joint[*index]);
+    let names = distinct(first.iter().map(|index| nodes[*index].name.as_str()), |_, _| {});
+    let mut of = vec![String::new(); nodes.len()];
+    for (index, name) in first.into_iter().zip(names) {
+        of[index] = name;
+    }
+    Ok(of)
 }
 
 /// The transform of a place.

@@ -166,7 +166,7 @@ fn unit(q: [f64; 4]) -> Option<[f32; 4]> {
 }
 
 /// Rotations as unit quaternions whose signs never jump, so that LINEAR takes the shortest arc.
-fn continuous(poses: impl Iterator<Item = [f64; 4]>) -> Vec<[f32; 4]> {
+pub(super) fn continuous(poses: impl Iterator<Item = [f64; 4]>) -> Vec<[f32; 4]> {
     let mut rotations: Vec<[f32; 4]> = Vec::new();
     for rotation in poses {
         let next = unit(rotation).unwrap_or([0.0, 0.0, 0.0, 1.0]);
@@ -177,7 +177,7 @@ fn continuous(poses: impl Iterator<Item = [f64; 4]>) -> Vec<[f32; 4]> {
 }
 
 /// The frames whose time, counted from the first in 32 bits, is later than all before.
-fn kept_frames(times: &[f64]) -> Vec<(usize, f32)> {
+pub(super) fn kept_frames(times: &[f64]) -> Vec<(usize, f32)> {
     let mut kept: Vec<(usize, f32)> = Vec::new();
     let first = times.first().copied().unwrap_or_default();
     for (frame, time) in times.iter().enumerate() {

@@ -1,8 +1,9 @@
 //! Skeletons as files of animation hold them, and what all such files have in common.
 //!
 //! A file of this kind holds bones in a tree, where each is in its parent at rest, and how each moves frame
-//! by frame. Its reader fills a [`Skeleton`] and calls [`Skeleton::build`]; a writer asks for the local
-//! transforms of a posed model, whatever its joints are.
+//! by frame. Its reader fills a [`Skeleton`] and calls [`Skeleton::build`]; a writer asks [`PlainBones`] for
+//! rotations and places of the bones of a posed model, whatever its joints are, or [`Place::nearest`] for the
+//! translation, rotation and scale nearest to a transform.
 //!
 //! # The contract
 //!
@@ -22,7 +23,11 @@
 //!   `skeleton/up`.
 
 mod assumed;
+mod bake;
 mod bone;
+mod place;
 
 pub use assumed::{Assumed, UnitGuess, facing_of, length_unit, named_unit, up_of};
+pub use bake::{PlainBone, PlainBones};
 pub use bone::{Bone, Freedom, FreedomKind, Skeleton};
+pub use place::Place;

@@ -31,8 +31,8 @@ pub fn skeletons_are(assumed: Assumed) {
     let _ = ASSUMED.set(assumed);
 }
 
-/// What [`skeletons_are`] said.
-pub(super) fn assumed() -> Assumed {
+/// What [`skeletons_are`] said of skeletons whose files do not state it.
+pub fn assumed() -> Assumed {
     ASSUMED.get().copied().unwrap_or_default()
 }
 
