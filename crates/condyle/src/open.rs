@@ -243,6 +243,25 @@ fn scene_of(path: &Path, bytes: &[u8], assumed: &Assumed) -> Result<Read<Content
     Ok(read.map(|found| Content::Animation(Box::new(found))))
 }
 
+/// A character in glTF given back with a motion of the model that [`animation`] gives for it: its meshes, materials and
+/// all else stay as they are, `name` is what the new animation is called, and animations that it had are left out.
+///
+/// # Errors
+/// [`OpenError`] where the file cannot be read, or the motion is not that of its model.
+#[cfg(feature = "glb")]
+pub fn reanimated(path: &Path, motion: &Motion, name: &str) -> Result<Read<Vec<u8>>, OpenError> {
+    let bytes = bytes(path)?;
+    let options =
+        glb::Options { animation: source::wanted_animation(), assumed: source::assumed() };
+    let mut other =
+        |name: &str| source::bytes(&beside(path, name)).map_err(|error| error.to_string());
+    let moved = glb::node_motion(&bytes, &options, &mut other, motion).and_then(|mut moved| {
+        name.clone_into(&mut moved.name);
+        glb::reanimate(&bytes, &moved, glb::Old::Replaced)
+    });
+    moved.map_err(|error| failed(path, Cause::Content { error, text: None }))
+}
+
 /// A setup with the tasks that have a file of their own.
 #[cfg(feature = "opensim")]
 fn with_tasks(path: &Path, mut read: Read<Content>) -> Result<Read<Content>, OpenError> {

@@ -89,7 +89,7 @@ const WRITTEN: [ContentKind; 4] =
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
                      to .glb or .bvh (an animation), .trc or .c3d (the model's markers), and poses (.json) to all \
                      of these, with --rate as key poses; a skeleton with its motion (.bvh, .glb, .gltf) to all of these \
-                     without --model, and as a model; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved), .glb, .bvh or .osim; \
+                     without --model, and as a model; all of these motions for another figure with --onto; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved), .glb, .bvh or .osim; \
                      a recording (.trc, .c3d) to .trc, .c3d or .csv, with --analog its channels to .csv, .mot or .sto";
 
 impl Convert {
@@ -316,6 +316,11 @@ impl Convert {
         if let Some((onto, carried)) =
             self.onto.carried(&self.input, model, &motion, self.limits)?
         {
+            // Characters are given back as they came, with the new motion.
+            if let (Id::Glb, Some(path)) = (target.id, self.onto.character()) {
+                let given = open::reanimated(path, &carried, &self.name())?;
+                return Ok(warned(path, given));
+            }
             return self.written(&onto, carried, target);
         }
         if self.limits == Limits::On {
