@@ -152,6 +152,8 @@ pub enum Id {
     Glb,
     /// glTF in JSON, and the files of VRM, which are GLB.
     Gltf,
+    /// Scenes of Autodesk's programs.
+    Fbx,
     /// Skeletons with motion of Biovision.
     Bvh,
 }
@@ -274,6 +276,19 @@ pub const FORMATS: &[Format] = &[
         },
         read: |bytes, _| csv::from_bytes(bytes).map(|read| read.map(Content::Table)),
     },
+    #[cfg(feature = "fbx")]
+    Format {
+        id: Id::Fbx,
+        name: "fbx",
+        title: "FBX: skeletons and animations",
+        endings: &["fbx"],
+        reads: &[ContentKind::Motion, ContentKind::Model],
+        writes: &[],
+        sniff: |bytes| {
+            bytes.starts_with(b"Kaydara FBX Binary") || starts(bytes, 64).starts_with("; FBX ")
+        },
+        read: |bytes, _| animation(crate::fbx::from_bytes(bytes)),
+    },
     #[cfg(feature = "glb")]
     Format {
         id: Id::Glb,
@@ -378,6 +393,11 @@ impl Format {
     ) -> Result<Read<Content>, Error> {
         match self.id {
             Id::Bvh => animation(bvh::from_bytes_with(bytes, assumed)),
+            #[cfg(feature = "fbx")]
+            Id::Fbx => {
+                let options = glb::Options { assumed: *assumed, ..glb::Options::default() };
+                animation(crate::fbx::read(bytes, &options))
+            }
             #[cfg(feature = "glb")]
             Id::Glb | Id::Gltf => {
                 let options = glb::Options { assumed: *assumed, ..glb::Options::default() };

@@ -195,6 +195,12 @@ pub fn content_as(
     let read = match format.id {
         #[cfg(feature = "glb")]
         Id::Glb | Id::Gltf => scene_of(path, &bytes, assumed),
+        #[cfg(feature = "fbx")]
+        Id::Fbx => {
+            let options = glb::Options { animation: source::wanted_animation(), assumed: *assumed };
+            let read = condyle_formats::fbx::read(&bytes, &options);
+            read.map(|read| read.map(|found| Content::Animation(Box::new(found))))
+        }
         _ => format.read_with(&bytes, &mut include, assumed),
     };
     let read = read.map_err(|error| {

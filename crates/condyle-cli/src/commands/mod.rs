@@ -33,7 +33,7 @@ pub(crate) struct Arguments {
     /// written are cm.
     #[arg(long, global = true, value_name = "UNIT", value_parser = length_unit)]
     length_unit: Option<f64>,
-    /// Which animation is read of a file that holds several (.glb, .gltf): its name, or its number
+    /// Which animation is read of a file that holds several (.glb, .gltf, .fbx): its name, or its number
     /// counted from 1. Without it, the first.
     #[arg(long, global = true, value_name = "NAME")]
     animation: Option<String>,

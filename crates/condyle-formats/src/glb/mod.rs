@@ -28,7 +28,13 @@ mod tree;
 mod write;
 
 pub use accessor::Beside;
+#[cfg(feature = "fbx")]
+pub(crate) use clip::{Channel, Clip, Path};
 pub(crate) use container::looks_like_json;
+#[cfg(feature = "fbx")]
+pub(crate) use figure::{Figure, Still};
+#[cfg(feature = "fbx")]
+pub(crate) use tree::{Tree, TreeNode};
 
 pub use condyle_mesh::{Finish, Mesh};
 pub use read::{Options, from_bytes, node_motion, read};
