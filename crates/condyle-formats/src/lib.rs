@@ -17,6 +17,7 @@
 //! | resolved models (JSON) | [`exchange::read`] | [`exchange::write`] |
 //! | C3D trials: markers, analog channels, events | [`c3d::from_bytes`] | [`c3d::write`] |
 //! | CSV tables | [`csv::read`] | [`csv::write`] |
+//! | OpenSim models | [`opensim::model::read`] | [`opensim::write`] |
 //! | OpenSim inverse kinematics setups | [`opensim::setup`] | |
 //! | BVH skeletons with motion | [`bvh::from_bytes`] | [`bvh::write`] |
 //! | FBX skeletons with motion | `fbx::read` | |
@@ -39,6 +40,8 @@ mod format;
 pub mod glb;
 #[cfg(feature = "opensim")]
 pub mod opensim;
+#[cfg(feature = "plain")]
+pub mod plain;
 #[cfg(feature = "poses")]
 pub mod poses;
 pub mod skeleton;

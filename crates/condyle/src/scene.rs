@@ -117,7 +117,9 @@ fn driven(model: &Model, motion: &Motion, mode: Mode) -> Vec<Driven> {
         if let Some(name) = &coordinate.drives {
             let held = |value: f64| match mode {
                 Mode::Open => value,
-                _ => value.max(coordinate.range.lower).min(coordinate.range.upper),
+                _ => value
+                    .max(coordinate.range.lower.unwrap_or(f64::NEG_INFINITY))
+                    .min(coordinate.range.upper.unwrap_or(f64::INFINITY)),
             };
             let value = |frame: &Vec<f64>| held(frame.get(start).copied().unwrap_or_default());
             found.push(Driven {
