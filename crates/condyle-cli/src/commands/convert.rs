@@ -88,13 +88,8 @@ const WRITTEN: [ContentKind; 4] =
 /// The supported conversions, for the message about any other.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
                      to .glb or .bvh (an animation), .trc or .c3d (the model's markers), and poses (.json) to all \
-<<<<<<< HEAD
                      of these, with --rate as key poses; a skeleton with its motion (.bvh, .glb, .gltf, .fbx) to all of these \
-                     without --model, and as a model; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved), .glb or .bvh; \
-=======
-                     of these, with --rate as key poses; a skeleton with its motion (.bvh, .glb, .gltf) to all of these \
                      without --model, and as a model; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved), .glb, .bvh or .osim; \
->>>>>>> glb
                      a recording (.trc, .c3d) to .trc, .c3d or .csv, with --analog its channels to .csv, .mot or .sto";
 
 impl Convert {
