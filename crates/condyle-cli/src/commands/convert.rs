@@ -316,6 +316,11 @@ impl Convert {
         if let Some((onto, carried)) =
             self.onto.carried(&self.input, model, &motion, self.limits)?
         {
+            if let Some(path) = self.onto.onto.as_ref().filter(|path| open::is_gltf(path))
+                && target.id == Id::Glb
+            {
+                return Ok(warned(path, open::reanimated(path, &carried, &self.name())?));
+            }
             return self.written(&onto, carried, target);
         }
         if self.limits == Limits::On {
