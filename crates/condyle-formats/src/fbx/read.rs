@@ -196,7 +196,8 @@ fn place(t: &ufbx::Transform) -> LocalPose {
         [t.translation.x, t.translation.y, t.translation.z, t.scale.x, t.scale.y, t.scale.z];
     let turn = [t.rotation.x, t.rotation.y, t.rotation.z, t.rotation.w];
     let length = turn.iter().map(|x| x * x).sum::<f64>().sqrt();
-    if !numbers.iter().all(|x| x.is_finite()) || !(length.is_finite() && length > 1e-9) {
+    let finite = numbers.iter().all(|x| x.is_finite()) && length.is_finite();
+    if !finite || length < 1e-9 {
         return LocalPose::IDENTITY;
     }
     let [x, y, z, a, b, c] = numbers;
