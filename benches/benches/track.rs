@@ -56,6 +56,7 @@ fn synthetic(model: &Model, frames: usize) -> Recording {
             .map(Into::into)
             .collect(),
         units: LengthUnit::Metre,
+        confidences: None,
     }
 }
 

@@ -18,6 +18,8 @@ use crate::{
     exchange,
     poses::{self, Poses},
 };
+#[cfg(feature = "document")]
+use condyle_learn::frames::Recipe;
 use condyle_model::Model;
 
 /// What a file may hold.
@@ -37,6 +39,8 @@ pub enum ContentKind {
     Names,
     /// What a pose should do.
     Goals,
+    /// Which markers give the orientation of a segment.
+    Recipe,
     /// A scene for viewers.
     Scene,
 }
@@ -53,6 +57,7 @@ impl ContentKind {
             Self::Setup => "a tracking setup",
             Self::Names => "a table of names",
             Self::Goals => "goals of a pose",
+            Self::Recipe => "a recipe",
             Self::Scene => "a scene",
         }
     }
@@ -87,6 +92,9 @@ pub enum Content {
     /// What a pose should do.
     #[cfg(feature = "document")]
     Goals(GoalList),
+    /// Which markers give the orientation of a segment.
+    #[cfg(feature = "document")]
+    Recipe(Recipe),
     /// A setup of inverse kinematics.
     #[cfg(feature = "opensim")]
     Setup(setup::IkSetup),
@@ -122,6 +130,8 @@ impl Content {
             Self::Names(_) => ContentKind::Names,
             #[cfg(feature = "document")]
             Self::Goals(_) => ContentKind::Goals,
+            #[cfg(feature = "document")]
+            Self::Recipe(_) => ContentKind::Recipe,
             #[cfg(feature = "opensim")]
             Self::Setup(_) | Self::Tasks(_) => ContentKind::Setup,
         }
@@ -191,7 +201,13 @@ pub const FORMATS: &[Format] = &[
         name: "toml",
         title: "documents that people write",
         endings: &["toml"],
-        reads: &[ContentKind::Model, ContentKind::Setup, ContentKind::Names, ContentKind::Goals],
+        reads: &[
+            ContentKind::Model,
+            ContentKind::Setup,
+            ContentKind::Names,
+            ContentKind::Goals,
+            ContentKind::Recipe,
+        ],
         writes: &[ContentKind::Model],
         sniff: |bytes| document::kind(bytes).is_some(),
         read: |bytes, include| {
@@ -200,6 +216,7 @@ pub const FORMATS: &[Format] = &[
                 Some(Kind::Setup) => document::setup::read(text, include)?.map(Content::TrackSetup),
                 Some(Kind::Names) => document::names::read(text, include)?.map(Content::Names),
                 Some(Kind::Goals) => document::goals::read(text, include)?.map(Content::Goals),
+                Some(Kind::Recipe) => document::recipe::read(text, include)?.map(Content::Recipe),
                 // Those that are no document at all get the message of a model.
                 _ => document::read(text, include)?.map(Content::Document),
             })
@@ -212,7 +229,7 @@ pub const FORMATS: &[Format] = &[
         title: "OpenSim's models and setups",
         endings: &["osim", "xml"],
         reads: &[ContentKind::Model, ContentKind::Setup],
-        writes: &[],
+        writes: &[ContentKind::Model],
         sniff: |bytes| starts(bytes, 4096).contains("<OpenSimDocument"),
         read: |bytes, include| {
             Ok(opensim::read(bytes, include)?.map(|holding| match holding {

@@ -16,6 +16,7 @@
 //! | resolved models (JSON) | [`exchange::read`] | [`exchange::write`] |
 //! | C3D trials: markers, analog channels, events | [`c3d::from_bytes`] | [`c3d::write`] |
 //! | CSV tables | [`csv::read`] | [`csv::write`] |
+//! | OpenSim models | [`opensim::model::read`] | [`opensim::write`] |
 //! | OpenSim inverse kinematics setups | [`opensim::setup`] | |
 //! | ASF skeletons, and AMC takes of them | [`asf::read`], [`asf::with_skeleton`] | |
 //! | BVH skeletons with motion | [`bvh::from_bytes`] | [`bvh::write`] |
@@ -37,6 +38,8 @@ mod format;
 pub mod glb;
 #[cfg(feature = "opensim")]
 pub mod opensim;
+#[cfg(feature = "plain")]
+pub mod plain;
 #[cfg(feature = "poses")]
 pub mod poses;
 pub mod skeleton;

@@ -15,6 +15,7 @@ fn recording() -> Recording {
         times: vec![0.0, 0.01, 0.02],
         positions,
         units: LengthUnit::Metre,
+        confidences: None,
     }
 }
 

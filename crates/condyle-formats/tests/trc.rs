@@ -497,6 +497,7 @@ fn recording() -> impl Strategy<Value = Recording> {
             times: (0..frames).map(|frame| frame as f64 / rate).collect(),
             positions: positions.into_iter().map(Into::into).collect(),
             units: LengthUnit::Metre,
+            confidences: None,
         })
     })
 }

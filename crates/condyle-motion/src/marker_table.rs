@@ -95,6 +95,7 @@ impl Recording {
             times: table.times.clone(),
             positions: positions.collect(),
             units: LengthUnit::Metre,
+            confidences: None,
         };
         let unit = table.header_value("Units").and_then(LengthUnit::from_name);
         let unit = match unit {

@@ -60,6 +60,7 @@ impl PartialEq for Observed {
 ///         .map(Observed::from)
 ///         .to_vec(),
 ///     units: LengthUnit::Millimetre,
+///     ..Recording::default()
 /// };
 /// assert_eq!(recording.position(1, 1), Some([0.1, 1.0, -0.1]));
 /// assert_eq!(recording.position(1, 0), None);
@@ -77,6 +78,9 @@ pub struct Recording {
     pub positions: Vec<Observed>,
     /// The unit of the file it came from, and of the file it goes to.
     pub units: LengthUnit,
+    /// How sure each position is, from 0 to 1, in the order of the positions; `None` where nobody says, as
+    /// for markers that cameras track. Estimators of poses say it.
+    pub confidences: Option<Vec<f64>>,
 }
 
 /// A run of frames in which one marker was not seen.
@@ -121,6 +125,27 @@ impl Recording {
             .checked_mul(width)
             .and_then(|start| self.positions.get(start..start.checked_add(width)?))
             .unwrap_or_default()
+    }
+
+    /// How sure a marker's position in a frame is, from 0 to 1; 1 where nobody says.
+    ///
+    /// ```
+    /// use condyle_motion::{Observed, Recording};
+    /// let recording = Recording {
+    ///     labels: vec!["nose".into(), "left_ear".into()],
+    ///     times: vec![0.0],
+    ///     positions: vec![Observed::from([0.0, 1.6, 0.1]); 2],
+    ///     confidences: Some(vec![0.9, 0.4]),
+    ///     ..Recording::default()
+    /// };
+    /// assert_eq!(recording.confidence(0, 1), 0.4);
+    /// ```
+    #[must_use]
+    pub fn confidence(&self, frame: usize, marker: usize) -> f64 {
+        let width = self.labels.len();
+        let known = self.confidences.as_ref().filter(|_| marker < width);
+        let place = frame.checked_mul(width).and_then(|start| start.checked_add(marker));
+        known.zip(place).and_then(|(all, place)| all.get(place)).copied().unwrap_or(1.0)
     }
 
     /// The runs of frames in which a marker was not seen, marker by marker.
@@ -174,6 +199,12 @@ impl Recording {
     #[must_use]
     pub fn mismatch(&self) -> Option<String> {
         let (frames, labels) = (self.frames(), self.labels.len());
+        if let Some(all) = &self.confidences
+            && all.len() != self.positions.len()
+        {
+            let (positions, all) = (self.positions.len(), all.len());
+            return Some(format!("{positions} positions need as many confidences, found {all}"));
+        }
         (frames.checked_mul(labels) != Some(self.positions.len())).then(|| {
             format!(
                 "{frames} frames of {labels} markers need {} positions, found {}",
@@ -211,6 +242,7 @@ mod tests {
             times: (0..rows.len()).map(|i| i as f64).collect(),
             positions: rows.concat().into_iter().map(Observed::from).collect(),
             units: LengthUnit::Metre,
+            confidences: None,
         }
     }
 

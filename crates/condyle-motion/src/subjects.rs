@@ -49,12 +49,17 @@ impl Recording {
             return Err(Error::new("recording/subject", message).with_help(help));
         }
         let rows = (0..self.frames()).map(|frame| self.frame(frame));
+        let confidence = |frame: usize| kept.iter().map(move |&l| self.confidence(frame, l));
         Ok(Self {
             labels: kept.iter().map(|&label| self.labels[label].clone()).collect(),
             positions: rows
                 .flat_map(|row| kept.iter().filter_map(|&l| row.get(l).copied()))
                 .collect(),
             times: self.times.clone(),
+            confidences: self
+                .confidences
+                .is_some()
+                .then(|| (0..self.frames()).flat_map(confidence).collect()),
             ..*self
         })
     }

@@ -26,6 +26,7 @@ impl Motion {
             times: self.times.clone(),
             positions,
             units: LengthUnit::Millimetre,
+            confidences: None,
         })
     }
 }

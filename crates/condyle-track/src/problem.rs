@@ -39,6 +39,9 @@ pub(crate) struct Buffers {
     /// For each group of markers, and for each set of groups.
     pub moments: Vec<Moments>,
     pub summed: Vec<Moments>,
+    /// For each unknown how a line turns with it, and which unknowns do that; empty between targets.
+    pub velocities: Vec<Option<Vec3>>,
+    pub touched: Vec<u32>,
 }
 
 impl Buffers {
@@ -77,7 +80,8 @@ impl Frame<'_> {
         *total_weight = 0.0;
         for (i, marker) in self.tracker.markers.placed.iter().enumerate() {
             let seen = self.seen.get(i).copied().flatten().is_some();
-            weights[i] = if seen { marker.weight } else { 0.0 };
+            let factor = self.tracker.targets.marker_factor(self.index, i);
+            weights[i] = if seen { marker.weight * factor } else { 0.0 };
             *total_weight += weights[i];
         }
     }

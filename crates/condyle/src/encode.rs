@@ -98,6 +98,21 @@ pub fn scene(
     Ok(Read { value: glb::write(&value)?, warnings })
 }
 
+/// A model in the text of another program, with what was fitted, dropped or turned into something else.
+///
+/// # Errors
+/// `format/not-written` if models are not written in this format.
+pub fn model(format: &Format, model: &Model) -> Result<Read<Vec<u8>>, Error> {
+    match format.id {
+        #[cfg(feature = "opensim")]
+        Id::OpenSim => Ok(condyle_formats::opensim::write(model).map(String::into_bytes)),
+        _ => {
+            let _ = model;
+            Err(not_written(format, ContentKind::Model))
+        }
+    }
+}
+
 /// A motion as a skeleton of plain bones that moves, with so many metres in a unit. Limits are applied here.
 ///
 /// # Errors

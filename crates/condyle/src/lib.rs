@@ -275,6 +275,8 @@ pub mod open;
 pub mod picture;
 #[cfg(feature = "document")]
 pub mod posing;
+#[cfg(feature = "document")]
+pub mod retargeting;
 pub mod scaling;
 #[cfg(feature = "glb")]
 pub mod scene;
@@ -286,6 +288,7 @@ pub use condyle_check as check;
 pub use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Subject};
 #[cfg(feature = "formats")]
 pub use condyle_formats as formats;
+pub use condyle_learn as learn;
 pub use condyle_math as math;
 pub use condyle_mesh as mesh;
 pub use condyle_model::{

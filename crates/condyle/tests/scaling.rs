@@ -90,6 +90,7 @@ fn recording(
         times: (0..frames).map(|f| f as f64 / 100.0).collect(),
         positions: positions.collect(),
         units: LengthUnit::Metre,
+        confidences: None,
     }
 }
 

@@ -123,6 +123,7 @@ fn a_recording_is_turned_filtered_and_cut() {
         times: (0..50).map(|i| i as f64 / 100.0).collect(),
         positions: (0..50).map(|i| if i == 25 { Observed::MISSING } else { seen(i) }).collect(),
         units: LengthUnit::Millimetre,
+        confidences: None,
     };
     let plan = Plan {
         axes: Some("x,z,-y".parse::<Axes>().expect("axes")),

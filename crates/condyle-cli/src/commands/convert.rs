@@ -2,6 +2,7 @@
 
 mod dropped;
 mod includes;
+mod onto;
 
 use super::{Angles, Limits, Outcome};
 use crate::failure::{Failure, warn_about, warned};
@@ -57,6 +58,8 @@ pub(crate) struct Convert {
     /// The format of the output; by default that of its ending.
     #[arg(long, value_parser = format::names(&WRITTEN))]
     to: Option<String>,
+    #[command(flatten)]
+    onto: onto::Onto,
 }
 
 /// How coordinates of one number go from key pose to key pose.
@@ -70,7 +73,12 @@ enum Curve {
 
 /// Whether a format holds what moves.
 fn moves(format: &Format) -> bool {
-    !matches!(format.id, Id::Document | Id::Poses)
+    !matches!(format.id, Id::Document | Id::Poses) && !of_models(format)
+}
+
+/// Whether a format of other programs holds models as trees of plain joints.
+fn of_models(format: &Format) -> bool {
+    matches!(format.id, Id::OpenSim)
 }
 
 /// What can be written.
@@ -81,14 +89,18 @@ const WRITTEN: [ContentKind; 4] =
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
                      to .glb or .bvh (an animation), .trc or .c3d (the model's markers), and poses (.json) to all \
                      of these, with --rate as key poses; a skeleton with its motion (.bvh, .amc, .glb, .gltf) to all of these \
-                     without --model, and as a model; a model (.osim, .toml, .json, .asf, or a shipped one by name) to .toml, .json (resolved), .glb or .bvh; \
+                     without --model, and as a model; a model (.osim, .toml, .json, .asf, or a shipped one by name) to .toml, .json (resolved), .glb, .bvh or .osim; \
                      a recording (.trc, .c3d) to .trc, .c3d or .csv, with --analog its channels to .csv, .mot or .sto";
 
 impl Convert {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
         let target = self.target()?;
-        let inputs: Vec<&Path> =
-            [&self.input].into_iter().chain(&self.model).map(PathBuf::as_path).collect();
+        let inputs: Vec<&Path> = [&self.input]
+            .into_iter()
+            .chain(&self.model)
+            .chain(self.onto.inputs())
+            .map(PathBuf::as_path)
+            .collect();
         output::check_distinct(&inputs, &[&self.output])?;
         if let Some(model) = &self.model {
             open::skeleton_is(model);
@@ -127,6 +139,11 @@ impl Convert {
                 if target.id == Id::Glb =>
             {
                 self.scene(&model, &Motion::default())?
+            }
+            Content::Model(model) | Content::Document(Document { model, .. })
+                if of_models(target) =>
+            {
+                warned(&self.output, encode::model(target, &model)?)
             }
             Content::Model(model) | Content::Document(Document { model, .. })
                 if target.id == Id::Bvh =>
@@ -292,13 +309,18 @@ impl Convert {
         }
     }
 
-    /// A motion of a model in another format, legal if asked for.
+    /// A motion of a model, or what it is for another figure, in another format, legal if asked for.
     fn moved(
         &self,
         model: &Model,
         mut motion: Motion,
         target: &Format,
     ) -> Result<Vec<u8>, Failure> {
+        if let Some((onto, carried)) =
+            self.onto.carried(&self.input, model, &motion, self.limits)?
+        {
+            return self.written(&onto, carried, target);
+        }
         if self.limits == Limits::On {
             let legal::Kept { solved, lost } = legal::keep(model, &mut motion);
             let all = motion.frames.len();
@@ -315,6 +337,16 @@ impl Convert {
                 ));
             }
         }
+        self.written(model, motion, target)
+    }
+
+    /// A motion of a model in another format.
+    fn written(
+        &self,
+        model: &Model,
+        mut motion: Motion,
+        target: &Format,
+    ) -> Result<Vec<u8>, Failure> {
         match target.id {
             Id::Glb => return self.scene(model, &motion),
             Id::Bvh => return self.skeleton(target, model, &motion),

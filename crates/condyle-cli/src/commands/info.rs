@@ -80,6 +80,12 @@ fn to_json(content: &Content) -> Value {
                 |goal: &NamedGoal| json!({ "kind": goal.aim.kind(), "name": goal.name.text });
             json!({ "kind": "goals", "goals": list.goals.iter().map(goal).collect::<Vec<_>>() })
         }
+        Content::Recipe(recipe) => json!({
+            "kind": "recipe",
+            "child": recipe.child.name,
+            "reference": recipe.reference.as_ref().map(|frame| &frame.name),
+            "places": recipe.places(),
+        }),
         other => json!({ "kind": other.kind().name() }),
     }
 }
@@ -103,6 +109,11 @@ fn to_text(content: &Content) -> String {
             let goal = |goal: &NamedGoal| format!("  {} {}\n", goal.aim.kind(), goal.name.text);
             let goals: String = list.goals.iter().map(goal).collect();
             format!("{} goals of a pose\n{goals}", list.goals.len())
+        }
+        Content::Recipe(recipe) => {
+            let reference = recipe.reference.as_ref().map_or("laboratory", |frame| &frame.name);
+            let places = recipe.places().join(", ");
+            format!("a recipe: {} in {reference}, from {places}\n", recipe.child.name)
         }
         other => format!("{}\n", other.kind().name()),
     }

@@ -55,6 +55,7 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Read<Trial>, Error> {
         times: (0..layout.frames).map(time).collect(),
         positions: points.positions,
         units: unit,
+        confidences: None,
     };
     let trial = Trial {
         recording,

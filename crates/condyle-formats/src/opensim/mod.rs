@@ -2,11 +2,13 @@
 
 pub mod model;
 pub mod setup;
+mod write;
 
 use crate::Include;
 use crate::xml::XmlDocument;
 use condyle_diagnostics::{Error, Read};
 use condyle_model::Model;
+pub use write::{write, written};
 
 /// What a file of OpenSim holds.
 #[derive(Clone, Debug)]

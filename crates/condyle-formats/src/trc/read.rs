@@ -74,8 +74,7 @@ pub fn read(text: &str) -> Result<Read<Recording>, Error> {
     }
     let rate = rate(&header, &times, frame_span, &mut warnings)?;
     let labels = header.labels;
-    let mut recording =
-        Recording { labels, rate, times, positions: Vec::new(), units: LengthUnit::Metre };
+    let mut recording = Recording { labels, rate, times, ..Recording::default() };
     recording.positions = std::mem::take(&mut positions);
     convert(&mut recording, header.unit, header.values, &mut warnings)?;
     Ok(Read { value: recording, warnings: warnings.finish() })

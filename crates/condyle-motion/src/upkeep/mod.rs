@@ -245,6 +245,7 @@ impl Series {
                 positions.push(Observed::from([xyz[0][row], xyz[1][row], xyz[2][row]]));
             }
         }
+        recording.confidences = between(recording, &self.times);
         recording.positions = positions;
         recording.times = self.times;
     }
@@ -262,6 +263,28 @@ impl Series {
             (0..rows).flat_map(|row| self.columns.iter().map(move |column| column[row])).collect();
         table.times = self.times;
     }
+}
+
+/// The confidences of a recording at other times, each between its neighbours' that were seen.
+fn between(recording: &Recording, times: &[f64]) -> Option<Vec<f64>> {
+    recording.confidences.as_ref()?;
+    let markers = recording.labels.len();
+    let mut confidences = vec![0.0; times.len() * markers];
+    for marker in 0..markers {
+        let at = |frame: usize| (recording.times[frame], recording.confidence(frame, marker));
+        let seen: Vec<(f64, f64)> =
+            (0..recording.frames()).map(at).filter(|(_, sure)| *sure > 0.0).collect();
+        for (row, time) in times.iter().enumerate() {
+            let after = seen.partition_point(|(t, _)| t < time);
+            let before = after.checked_sub(1).and_then(|i| seen.get(i)).or(seen.first());
+            let Some((&(t0, c0), &(t1, c1))) = before.zip(seen.get(after).or(seen.last())) else {
+                continue;
+            };
+            let share = if t1 > t0 { ((time - t0) / (t1 - t0)).clamp(0.0, 1.0) } else { 1.0 };
+            confidences[row * markers + marker] = c0 + share * (c1 - c0);
+        }
+    }
+    Some(confidences)
 }
 
 /// The runs of rows in which a column has values: first row and the row after the last.

@@ -3,7 +3,8 @@
 //! With the unknowns x (the directions of the independent coordinates, n of them), a frame minimises
 //!
 //! ```text
-//! F(x) + P(x) + prior(x),   F = (Σₘ wₘ |eₘ|²) / (Σₘ wₘ) + Σ_c w_c (q_c - t_c)² + Σ_o w_o |ρ_o|² + w Σ_r c_r²
+//! F(x) + P(x) + prior(x),   F = (Σₘ wₘ |eₘ|²) / (Σₘ wₘ) + Σ_c w_c (q_c - t_c)² + Σ_o w_o |ρ_o|² + Σ_d w_d |d_d - v_d|²
+//!                               + Σ_p w_p |p - p*|² + w Σ_r c_r²
 //!                           P = Σ_p k_p (Σᵢ a_pᵢ qᵢ - r_p)²
 //! ```
 //!
@@ -25,20 +26,25 @@
 
 mod closure;
 mod coordinate;
+mod direction;
 mod marker;
 mod moments;
 mod orientation;
 mod pairs;
+mod place;
 mod posture;
 mod prior;
 #[cfg(test)]
 pub(crate) mod tests;
 
 pub use coordinate::{CoordinateTarget, Wanted};
+pub use direction::DirectionTarget;
 pub use marker::MarkerTarget;
 pub(crate) use marker::{Markers, Placed};
 pub(crate) use moments::Moments;
 pub use orientation::OrientationTarget;
+pub(crate) use orientation::rotation_of;
+pub use place::PlaceTarget;
 pub use posture::PostureTarget;
 pub use prior::PRIOR;
 
@@ -53,10 +59,18 @@ use condyle_solve::least_squares::LocalModel;
 pub struct Targets {
     /// Markers, in the order of the recorded positions that are passed with each frame.
     pub markers: Vec<MarkerTarget>,
+    /// Factors on the weights of the markers, frame by frame in the order of the markers; 1 beyond their
+    /// end, so that none are needed where all positions are as sure. A marker of factor 0 is not used
+    /// in that frame.
+    pub marker_factors: Vec<f64>,
     /// Coordinates that should have a value.
     pub coordinates: Vec<CoordinateTarget>,
     /// Segments that should have an orientation.
     pub orientations: Vec<OrientationTarget>,
+    /// Lines between points that should point somewhere.
+    pub directions: Vec<DirectionTarget>,
+    /// Points that should be somewhere.
+    pub places: Vec<PlaceTarget>,
     /// Rest values with their stiffness.
     pub postures: Vec<PostureTarget>,
     /// Weight of squared loop errors; infinite (or `None`) closes loops exactly.
@@ -85,12 +99,14 @@ enum Part {
 }
 
 /// The kinds, in the order in which they are summed.
-fn kinds(tracker: &Tracker) -> [(Part, &dyn Target); 6] {
+fn kinds(tracker: &Tracker) -> [(Part, &dyn Target); 8] {
     let targets = &tracker.targets;
     [
         (Part::Mean, &tracker.markers),
         (Part::Fit, &targets.coordinates),
         (Part::Fit, &targets.orientations),
+        (Part::Fit, &targets.directions),
+        (Part::Fit, &targets.places),
         (Part::Posture, &targets.postures),
         (Part::Unreported, &prior::Prior),
         (Part::Fit, &closure::Closures),
@@ -154,6 +170,7 @@ impl Targets {
     /// where one number is asked for. Markers keep their places, with weight 0.
     pub(crate) fn clean(&mut self, model: &Model) {
         let positive = |w: f64| w > 0.0 && w.is_finite();
+        self.marker_factors.iter_mut().filter(|f| !positive(**f)).for_each(|f| *f = 0.0);
         let number = |id| model.coordinate(id).kind != CoordinateKind::Orientation;
         for target in &mut self.markers {
             if !positive(target.weight) || target.marker >= model.markers().len() {
@@ -162,16 +179,24 @@ impl Targets {
         }
         self.coordinates.retain(|t| positive(t.weight) && number(t.coordinate));
         self.orientations.retain(|t| positive(t.weight));
+        self.directions.retain(|t| positive(t.weight));
+        self.places.retain(|t| positive(t.weight));
         self.postures.retain(|t| {
             let known = t.terms.iter().all(|&(id, factor)| factor.is_finite() && number(id));
             positive(t.stiffness) && t.rest.is_finite() && known
         });
     }
 
+    /// The factor on the weight of a marker target in a frame.
+    pub(crate) fn marker_factor(&self, frame: usize, marker: usize) -> f64 {
+        let place = frame.checked_mul(self.markers.len()).and_then(|p| p.checked_add(marker));
+        place.and_then(|place| self.marker_factors.get(place)).copied().unwrap_or(1.0)
+    }
+
     /// Whether something but markers says where the model should be; a posture only says how it holds
     /// itself, and leaves a frame without markers as it was.
     pub(crate) fn stand_without_markers(&self) -> bool {
-        !(self.coordinates.is_empty() && self.orientations.is_empty())
+        !(self.coordinates.is_empty() && self.segments_held().next().is_none())
     }
 
     /// The segments that carry what is tracked.
@@ -182,8 +207,14 @@ impl Targets {
             Condition::Frames { at } => at.map(|(s, _)| s),
             Condition::Coupling { .. } => [None; 2],
         });
+        markers.chain(self.segments_held()).chain(closed.flatten()).collect()
+    }
+
+    /// The segments of orientations, lines and places.
+    fn segments_held(&self) -> impl Iterator<Item = SegmentId> + '_ {
+        let lines = self.directions.iter().flat_map(|t| [t.from.0, t.to.0]);
         let oriented = self.orientations.iter().map(|t| t.segment);
-        markers.chain(oriented).chain(closed.flatten()).collect()
+        oriented.chain(lines).chain(self.places.iter().map(|t| t.segment))
     }
 
     /// For each direction whether something is tracked that it moves. The rest of a single coordinate does
@@ -197,7 +228,7 @@ impl Targets {
         let mut moved = vec![!model.closures().is_empty(); model.tangent_len()];
         let markers = self.markers.iter().filter(|t| t.weight > 0.0);
         let segments = markers.filter_map(|t| model.markers()[t.marker].segment);
-        for segment in segments.chain(self.orientations.iter().map(|t| t.segment)) {
+        for segment in segments.chain(self.segments_held()) {
             program.segment_directions(segment).iter().for_each(|&(d, _)| moved[d as usize] = true);
         }
         let sums = self.postures.iter().filter(|t| t.terms.len() > 1);
@@ -213,9 +244,11 @@ impl Targets {
         moved
     }
 
-    /// Whether a segment should have an orientation in a frame.
+    /// Whether a segment, a line or a point is asked for in a frame.
     pub(crate) fn orient(&self, frame: usize) -> bool {
         self.orientations.iter().any(|t| matches!(t.wanted.get(frame), Some(Some(_))))
+            || self.directions.iter().any(|t| matches!(t.wanted.get(frame), Some(Some(_))))
+            || self.places.iter().any(|t| matches!(t.wanted.get(frame), Some(Some(_))))
     }
 
     /// Whether loops are closed by rows that must vanish.

@@ -34,6 +34,9 @@ pub struct Job<'a> {
     left_out: LeftOut,
 }
 
+/// A position that is less sure counts as not seen.
+const LEAST_CONFIDENCE: f64 = 0.05;
+
 /// How many chunks are judged before their trust is put together.
 const JUDGED: usize = 1024;
 
@@ -91,7 +94,11 @@ impl<'a> Job<'a> {
         let mut targets =
             Targets { markers: weighed.iter().map(target).collect(), ..Targets::default() };
         let markers = weighed.iter().map(name).collect();
-        let labels = weighed.iter().map(|found| found.label).collect();
+        let labels: Vec<usize> = weighed.iter().map(|found| found.label).collect();
+        if recording.confidences.is_some() {
+            let of_frame = |frame| labels.iter().map(move |&label| factor(recording, frame, label));
+            targets.marker_factors = frames.clone().flat_map(of_frame).collect();
+        }
         let times = &recording.times[frames.clone()];
         request.add_coordinates(&model, times, &mut targets, &mut warnings);
         posture::add(&model, &mut targets.postures);
@@ -146,10 +153,15 @@ impl<'a> Job<'a> {
 
     fn solved(&self, mut progress: &mut (dyn FnMut(usize, usize) + Send)) -> Tracking {
         let first = self.frames.start;
+        // What is hardly sure is not seen: it would only mislead where nothing is known yet.
+        let recorded_at =
+            |frame, label| self.recording.confidence(frame, label) >= LEAST_CONFIDENCE;
         let recorded = |frame: usize, seen: &mut Vec<Option<[f64; 3]>>| {
             let row = self.recording.frame(first + frame);
             seen.clear();
-            seen.extend(self.labels.iter().map(|&label| row.get(label)?.position()));
+            seen.extend(self.labels.iter().map(|&label| {
+                row.get(label)?.position().filter(|_| recorded_at(first + frame, label))
+            }));
         };
         let repairs = if self.robust {
             Repairs::of_origin(&self.tracker, &recorded, self.frames.len())
@@ -378,6 +390,12 @@ fn frames_in(
         warnings.push(said.with_help("the frames within are tracked"));
     }
     Ok(start..end)
+}
+
+/// The factor on the weight of a marker in a frame: the square of its confidence, so that the error of one that
+/// is half as sure is taken to be twice as large.
+fn factor(recording: &Recording, frame: usize, label: usize) -> f64 {
+    recording.confidence(frame, label).powi(2)
 }
 
 /// Runs `work` for every index, on threads where the feature allows, in any order; the answers

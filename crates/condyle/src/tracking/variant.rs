@@ -56,6 +56,11 @@ impl Variant {
                 for row in changed.positions.chunks_exact_mut(width.max(1)) {
                     known.clone().for_each(|&[a, b]| row.swap(a, b));
                 }
+                for row in
+                    changed.confidences.iter_mut().flat_map(|c| c.chunks_exact_mut(width.max(1)))
+                {
+                    known.clone().for_each(|&[a, b]| row.swap(a, b));
+                }
             }
             Self::Permuted(from) => {
                 let rows = recording.positions.chunks_exact(width.max(1));

@@ -249,6 +249,7 @@ impl<'a> Trial<'a> {
             times: numbers.iter().map(|n| tracking.times[*n]).collect(),
             positions: numbers.iter().flat_map(|n| recording.frame(frame(n)).to_vec()).collect(),
             units: recording.units,
+            confidences: None,
         };
         let mut pose = Pose::new(tracker.program());
         let places = places(tracker, &tracker.model().defaults(), &mut pose)?;

@@ -1,0 +1,9 @@
+//! Recordings to models: what people do, learned from what was measured of them.
+//!
+//! | module | what |
+//! | --- | --- |
+//! | [`frames`] | orientations of segments from markers, by a recipe |
+//! | [`limits`] | limits of joints from orientations |
+
+pub mod frames;
+pub mod limits;

@@ -1,0 +1,75 @@
+//! A model as another program's file, and beside it what that program should answer: joint values and the
+//! transforms of all bodies at random legal poses. The scripts in `oracles/written/` compare.
+//!
+//! `cargo run --example written -- MODEL FORMAT OUT [POSES]` writes OUT and OUT.json.
+
+use condyle::formats::opensim;
+use condyle::formats::plain::{Legal, Written};
+use condyle::math::{Affine, Quat};
+use condyle::{Model, open};
+use serde_json::{Map, Value, json};
+use std::path::Path;
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [model, format, out, rest @ ..] = &arguments[..] else {
+        eprintln!("usage: written MODEL FORMAT OUT [POSES]");
+        std::process::exit(2);
+    };
+    let poses = rest.first().and_then(|n| n.parse().ok()).unwrap_or(100);
+    let model = match open::model(Path::new(model)) {
+        Ok(read) => read.value,
+        Err(error) => {
+            eprintln!("{error}");
+            std::process::exit(1);
+        }
+    };
+    let written = match format.as_str() {
+        "osim" => opensim::written(&model),
+        other => {
+            eprintln!("no such format: {other}");
+            std::process::exit(2);
+        }
+    };
+    let answer = answer(&model, &written, poses);
+    let saved = std::fs::write(out, &written.text)
+        .and_then(|()| std::fs::write(format!("{out}.json"), answer.to_string()));
+    if let Err(error) = saved {
+        eprintln!("{out}: {error}");
+        std::process::exit(1);
+    }
+}
+
+fn answer(model: &Model, written: &Written, count: usize) -> Value {
+    let tree = &written.tree;
+    let mut legal = Legal::new(model, 2024);
+    let mut poses = vec![];
+    for _ in 0..count {
+        let (stored, pose) = legal.next_pose();
+        let variables = tree.variables_at(model, &stored);
+        let values = tree.values_at(model, pose, &variables);
+        let joints = written.joints.iter().map(|(name, v)| (name.clone(), json!(values[*v])));
+        let balls = written.balls.iter().map(|(name, at)| {
+            let q = pose.coordinate(model, tree.orientations[*at]).first_chunk::<4>();
+            let q = q.map_or(Quat::IDENTITY, |q| Quat::from(*q)).normalized();
+            (name.clone(), json!(q.to_array()))
+        });
+        let mut said: Vec<Affine> = vec![];
+        let (mut bodies, mut truth) = (Map::new(), Map::new());
+        for (link, name) in tree.links.iter().zip(&written.bodies) {
+            let own = tree.link_transform(link, &values, pose, model);
+            let world = link.parent.map_or(own, |parent| said[parent] * own);
+            said.push(world);
+            bodies.insert(name.clone(), json!(world.to_rows()[..12]));
+            truth.insert(name.clone(), json!(pose.segment(link.segment).to_rows()[..12]));
+        }
+        poses.push(json!({
+            "joints": joints.collect::<Map<String, Value>>(),
+            "balls": balls.collect::<Map<String, Value>>(),
+            "said": bodies,
+            "true": truth,
+        }));
+    }
+    let remarks = written.remarks.iter().map(|r| format!("{}: {}", r.code, r.sentence()));
+    json!({ "model": model.name(), "remarks": remarks.collect::<Vec<_>>(), "poses": poses })
+}
