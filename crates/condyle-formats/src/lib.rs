@@ -19,12 +19,14 @@
 //! | CSV tables | [`csv::read`] | [`csv::write`] |
 //! | OpenSim models | [`opensim::model::read`] | [`opensim::write`] |
 //! | OpenSim inverse kinematics setups | [`opensim::setup`] | |
+//! | ASF skeletons, and AMC takes of them | [`asf::read`], [`asf::with_skeleton`] | |
 //! | BVH skeletons with motion | [`bvh::from_bytes`] | [`bvh::write`] |
 //! | FBX skeletons with motion | `fbx::read` | |
 //! | GLB and glTF skeletons with motion; animated scenes | [`glb::read`] | [`glb::write`] |
 //! | GLB characters of a user, given back with a new animation | | [`glb::reanimate`] |
 //! | XML, for readers of models | [`XmlDocument`] | |
 
+pub mod asf;
 pub mod bvh;
 pub mod c3d;
 pub mod csv;

@@ -2,6 +2,7 @@
 
 mod parts;
 mod source;
+mod take;
 
 use crate::shipped;
 #[cfg(any(feature = "document", feature = "opensim"))]
@@ -32,6 +33,7 @@ pub use parts::{MotionParts, motion_parts};
 pub use source::{
     animation_is, assumed, files_read, is_standard_input, nameless_is, skeletons_are,
 };
+pub use take::skeleton_is;
 
 /// A file that could not be used.
 #[derive(Debug)]
@@ -193,6 +195,7 @@ pub fn content_as(
     let format = found.ok_or_else(no_format)?;
     let mut include = |name: &str| included(path, name);
     let read = match format.id {
+        Id::Amc => return take::take(path, &bytes, assumed).map(|read| named_after(path, read)),
         #[cfg(feature = "glb")]
         Id::Glb | Id::Gltf => scene_of(path, &bytes, assumed),
         #[cfg(feature = "fbx")]
@@ -218,12 +221,10 @@ pub fn content_as(
         Content::Trial(trial) => read.warnings.extend(trial.recording.settle_zeros(zeros)),
         _ => {}
     }
-    if let Content::Animation(animation) = &mut read.value
-        && animation.model.name().is_empty()
-    {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        animation.model.set_name(&name);
+    if format.id == Id::Asf {
+        skeleton_is(path);
     }
+    let read = named_after(path, read);
     match wanted {
         Some(kind) if !read.value.holds(kind) => {
             let message =
@@ -233,6 +234,19 @@ pub fn content_as(
         }
         _ => Ok(read),
     }
+}
+
+/// A skeleton without a name of its own is called after its file.
+fn named_after(path: &Path, mut read: Read<Content>) -> Read<Content> {
+    let model = match &mut read.value {
+        Content::Animation(animation) => &mut animation.model,
+        Content::Model(model) => model,
+        _ => return read,
+    };
+    if model.name().is_empty() {
+        model.set_name(&path.file_stem().unwrap_or_default().to_string_lossy());
+    }
+    read
 }
 
 /// The skeleton of a glTF file, whose buffers may be files beside it.
