@@ -15,6 +15,8 @@ pub struct Assumed {
     pub metres_per_unit: Option<f64>,
     /// The axis that points up.
     pub up: Option<UpAxis>,
+    /// Frames per second.
+    pub rate: Option<f64>,
 }
 
 /// Metres in the unit of the Carnegie Mellon recordings: 1/0.45 inch.

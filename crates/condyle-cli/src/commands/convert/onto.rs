@@ -5,7 +5,6 @@ use crate::failure::{Failure, warn_about, warned};
 use crate::progress::frames_bar;
 use crate::screen::say;
 use clap::Args;
-use condyle::formats::{Format, Id};
 use condyle::retargeting::{
     Fit, Humanoid, Options, Part, Recognised, Report, Retargeted, recognise, retarget,
 };
@@ -16,6 +15,9 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 pub(super) struct Onto {
     /// Carry the motion over to this figure: a model, or a file that holds a skeleton.
+    ///
+    /// A skinned character (.glb, .gltf, .vrm) written to .glb comes back as it is, with the motion in place of its
+    /// animations.
     ///
     /// Limbs point where they do in the source, whatever the postures in which the two rest and however
     /// long their limbs are. The bones are recognised by their names.
@@ -35,13 +37,6 @@ impl Onto {
         self.onto.iter().chain(&self.names)
     }
 
-    /// The target, if it is a character in glTF.
-    pub(super) fn character(&self) -> Option<&Path> {
-        let path = self.onto.as_deref()?;
-        let format = Format::of_ending(&open::ending(path))?;
-        matches!(format.id, Id::Glb | Id::Gltf).then_some(path)
-    }
-
     /// The target and its motion; `None` where none is asked for.
     pub(super) fn carried(
         &self,
@@ -55,7 +50,7 @@ impl Onto {
             Some(path) => Some(warned(path, open::names(path)?)),
             None => None,
         };
-        let Animation { model: target, .. } = warned(onto, open::animation(onto)?);
+        let Animation { model: target, .. } = warned(onto, open::figure(onto)?);
         let known = |path: &Path, model: &Model| {
             let known = recognise(model, table.as_ref())?;
             warn_about(path, &known.warnings);
