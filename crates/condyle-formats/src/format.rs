@@ -162,6 +162,8 @@ pub enum Id {
     Glb,
     /// glTF in JSON, and the files of VRM, which are GLB.
     Gltf,
+    /// Scenes of Autodesk's programs.
+    Fbx,
     /// Skeletons with motion of Biovision.
     Bvh,
     /// Skeletons of the course CSE 169.
@@ -296,6 +298,19 @@ pub const FORMATS: &[Format] = &[
             start.starts_with("# indegrees=") || names.is_some_and(|line| line.starts_with("time,"))
         },
         read: |bytes, _| csv::from_bytes(bytes).map(|read| read.map(Content::Table)),
+    },
+    #[cfg(feature = "fbx")]
+    Format {
+        id: Id::Fbx,
+        name: "fbx",
+        title: "FBX: skeletons and animations",
+        endings: &["fbx"],
+        reads: &[ContentKind::Motion, ContentKind::Model],
+        writes: &[],
+        sniff: |bytes| {
+            bytes.starts_with(b"Kaydara FBX Binary") || starts(bytes, 64).starts_with("; FBX ")
+        },
+        read: |bytes, _| animation(crate::fbx::from_bytes(bytes)),
     },
     #[cfg(feature = "glb")]
     Format {
@@ -442,6 +457,11 @@ impl Format {
         match self.id {
             Id::Bvh => animation(bvh::from_bytes_with(bytes, assumed)),
             Id::Skel => Ok(skel::read(bytes, assumed)?.map(Content::Model)),
+            #[cfg(feature = "fbx")]
+            Id::Fbx => {
+                let options = glb::Options { assumed: *assumed, ..glb::Options::default() };
+                animation(crate::fbx::read(bytes, &options))
+            }
             Id::Asf => Ok(asf::read(bytes, assumed)?.map(Content::Model)),
             #[cfg(feature = "glb")]
             Id::Glb | Id::Gltf => {

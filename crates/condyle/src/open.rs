@@ -198,6 +198,12 @@ pub fn content_as(
         Id::Amc => return take::take(path, &bytes, assumed).map(|read| named_after(path, read)),
         #[cfg(feature = "glb")]
         Id::Glb | Id::Gltf => scene_of(path, &bytes, assumed),
+        #[cfg(feature = "fbx")]
+        Id::Fbx => {
+            let options = glb::Options { animation: source::wanted_animation(), assumed: *assumed };
+            let read = condyle_formats::fbx::read(&bytes, &options);
+            read.map(|read| read.map(|found| Content::Animation(Box::new(found))))
+        }
         _ => format.read_with(&bytes, &mut include, assumed),
     };
     let read = read.map_err(|error| {
@@ -247,14 +253,58 @@ fn named_after(path: &Path, mut read: Read<Content>) -> Read<Content> {
 #[cfg(feature = "glb")]
 fn scene_of(path: &Path, bytes: &[u8], assumed: &Assumed) -> Result<Read<Content>, Error> {
     let options = glb::Options { animation: source::wanted_animation(), assumed: *assumed };
-    let mut other = |name: &str| {
-        source::bytes(&beside(path, name)).map_err(|error| match error.cause {
-            Cause::Io(error) => error.to_string(),
-            _ => error.to_string(),
-        })
-    };
-    let read = glb::read(bytes, &options, &mut other)?;
+    let read = glb::read(bytes, &options, &mut |name| buffer(path, name))?;
     Ok(read.map(|found| Content::Animation(Box::new(found))))
+}
+
+/// The bytes of a file that a glTF file names.
+#[cfg(feature = "glb")]
+fn buffer(path: &Path, name: &str) -> Result<Vec<u8>, String> {
+    source::bytes(&beside(path, name)).map_err(|error| match error.cause {
+        Cause::Io(error) => error.to_string(),
+        _ => error.to_string(),
+    })
+}
+
+/// Opens a figure that is to get a motion, as [`animation`] does; of what [`animation_is`] said nothing counts, since that is about
+/// the motion.
+///
+/// # Errors
+/// As [`content`].
+pub fn figure(path: &Path) -> Result<Read<Animation>, OpenError> {
+    #[cfg(feature = "glb")]
+    if is_gltf(path) {
+        let bytes = bytes(path)?;
+        let options = glb::Options { animation: None, assumed: source::assumed() };
+        let read = glb::read(&bytes, &options, &mut |name| buffer(path, name));
+        let mut read = read.map_err(|error| failed(path, Cause::Content { error, text: None }))?;
+        read.warnings.retain(|said| said.code != "glb/animations");
+        return Ok(read);
+    }
+    animation(path)
+}
+
+/// Whether a path names a file of glTF.
+#[cfg(feature = "glb")]
+pub fn is_gltf(path: &Path) -> bool {
+    Format::of_ending(&ending(path)).is_some_and(|f| matches!(f.id, Id::Glb | Id::Gltf))
+}
+
+/// The bytes of a character of glTF with another animation: a motion of the model that [`figure`] opens from it. All else stays as
+/// it is ([`glb::reanimate`]).
+///
+/// # Errors
+/// As [`content`]; what [`glb::node_motion`] and [`glb::reanimate`] find wrong.
+#[cfg(feature = "glb")]
+pub fn reanimated(path: &Path, motion: &Motion, name: &str) -> Result<Read<Vec<u8>>, OpenError> {
+    let bytes = bytes(path)?;
+    let options = glb::Options { animation: None, assumed: source::assumed() };
+    let tracks = glb::node_motion(&bytes, &options, &mut |name| buffer(path, name), motion);
+    let file = tracks.and_then(|tracks| {
+        let named = glb::NodeMotion { name: name.to_owned(), ..tracks };
+        glb::reanimate(&bytes, &named, glb::Old::Replaced)
+    });
+    file.map_err(|error| failed(path, Cause::Content { error, text: None }))
 }
 
 /// A setup with the tasks that have a file of their own.

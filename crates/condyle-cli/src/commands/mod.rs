@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
     /// beside the take.
     #[arg(long, global = true, value_name = "F.asf")]
     skeleton: Option<PathBuf>,
-    /// Which animation is read of a file that holds several (.glb, .gltf): its name, or its number
+    /// Which animation is read of a file that holds several (.glb, .gltf, .fbx): its name, or its number
     /// counted from 1. Without it, the first.
     #[arg(long, global = true, value_name = "NAME")]
     animation: Option<String>,

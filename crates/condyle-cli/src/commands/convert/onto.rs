@@ -16,6 +16,9 @@ use std::path::{Path, PathBuf};
 pub(super) struct Onto {
     /// Carry the motion over to this figure: a model, or a file that holds a skeleton.
     ///
+    /// A skinned character (.glb, .gltf, .vrm) written to .glb comes back as it is, with the motion in place of its
+    /// animations.
+    ///
     /// Limbs point where they do in the source, whatever the postures in which the two rest and however
     /// long their limbs are. The bones are recognised by their names.
     #[arg(long, value_name = "TARGET")]
@@ -47,7 +50,7 @@ impl Onto {
             Some(path) => Some(warned(path, open::names(path)?)),
             None => None,
         };
-        let Animation { model: target, .. } = warned(onto, open::animation(onto)?);
+        let Animation { model: target, .. } = warned(onto, open::figure(onto)?);
         let known = |path: &Path, model: &Model| {
             let known = recognise(model, table.as_ref())?;
             warn_about(path, &known.warnings);
