@@ -4,6 +4,7 @@ mod c3d_build;
 
 use c3d_build::{Build, Processor};
 use condyle_formats::{Content, Format, Id, LengthUnit, Observed, Read, Recording, Severity, c3d};
+use proptest::prelude::*;
 
 fn recording() -> Recording {
     let place = |i: usize| {
@@ -375,4 +376,48 @@ fn what_cannot_be_written_is_refused() {
     assert_eq!(c3d::write(&trial).unwrap_err().code(), "c3d/shape");
     let empty = Recording { times: vec![], positions: vec![], ..recording() };
     assert_eq!(c3d::write(&c3d::Trial::of(empty)).unwrap_err().code(), "c3d/shape");
+}
+
+proptest! {
+    /// Damaged files give errors or trials whose parts fit together, and what can be written is read again.
+    #[test]
+    fn damage_does_no_harm(
+        which in 0..6usize,
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..12),
+        early in prop::collection::vec((0..1100usize, any::<u8>()), 0..6),
+        cut in prop::option::of(any::<prop::sample::Index>()),
+    ) {
+        let processor = [Processor::Intel, Processor::Dec, Processor::Mips][which % 3];
+        let mut build = Build::new(processor, which < 3);
+        build.analog = 2;
+        build.numbers = [vec![1.0; 12], vec![5.0; 2]].concat().repeat(2);
+        build.text(1, "ANGLES", &["B"]);
+        build.word(2, "USED", 2);
+        build.words(2, "OFFSET", &[1, 2]);
+        build.floats(4, "TIMES", &[2, 1], &[0.0, 1.0]);
+        build.words(5, "ACTUAL_START_FIELD", &[1, 0]);
+        let mut bytes = build.bytes();
+        for (place, value) in changes {
+            let at = place.index(bytes.len());
+            bytes[at] = value;
+        }
+        for (at, value) in early {
+            bytes[at] = value;
+        }
+        if let Some(cut) = cut {
+            bytes.truncate(cut.index(bytes.len()));
+        }
+        let Ok(read) = c3d::from_bytes(&bytes) else { return Ok(()) };
+        let trial = read.value;
+        prop_assert_eq!(trial.recording.mismatch(), None);
+        prop_assert_eq!(trial.words.len(), trial.recording.positions.len());
+        let _ = (trial.events(), trial.platforms(), trial.to_table(), trial.analog.to_table(0.0));
+        let Ok(written) = c3d::write(&trial) else { return Ok(()) };
+        let again = c3d::from_bytes(&written);
+        let again = again.map_err(|error| TestCaseError::fail(error.to_string()))?.value;
+        prop_assert_eq!(&again.recording.labels, &trial.recording.labels);
+        prop_assert_eq!(again.recording.frames(), trial.recording.frames());
+        prop_assert_eq!(again.analog.stored.len(), trial.analog.stored.len());
+        prop_assert_eq!(again.others.len(), trial.others.len());
+    }
 }
