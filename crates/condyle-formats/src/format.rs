@@ -12,6 +12,8 @@ use crate::opensim::{self, setup};
 use crate::skeleton::Assumed;
 #[cfg(feature = "document")]
 use crate::text::utf8;
+#[cfg(feature = "urdf")]
+use crate::urdf;
 use crate::{Animation, Error, Read, Recording, Table, bvh, c3d, csv, sto, trc};
 #[cfg(feature = "poses")]
 use crate::{
@@ -146,6 +148,8 @@ pub enum Id {
     Document,
     /// OpenSim's models and setups.
     OpenSim,
+    /// Robot descriptions.
+    Urdf,
     /// Marker recordings.
     Trc,
     /// Marker recordings with analog channels and events.
@@ -234,6 +238,17 @@ pub const FORMATS: &[Format] = &[
                 opensim::Holding::Tasks(tasks) => Content::Tasks(tasks),
             }))
         },
+    },
+    #[cfg(feature = "urdf")]
+    Format {
+        id: Id::Urdf,
+        name: "urdf",
+        title: "robot descriptions of ROS",
+        endings: &["urdf"],
+        reads: &[ContentKind::Model],
+        writes: &[ContentKind::Model],
+        sniff: |bytes| starts(bytes, 4096).contains("<robot"),
+        read: |bytes, _| urdf::from_bytes(bytes).map(|read| read.map(Content::Model)),
     },
     Format {
         id: Id::Trc,
@@ -459,6 +474,7 @@ mod tests {
                 "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\n1\n".into(),
             ),
             (Id::Document, "# x\ncondyle = 1\nkind = \"model\"\n[segment.a]\n".to_owned()),
+            (Id::Urdf, "<robot name=\"r\"><link name=\"a\"/></robot>".to_owned()),
             (
                 Id::OpenSim,
                 "<?xml version=\"1.0\"?>\n<OpenSimDocument><Model/></OpenSimDocument>".into(),

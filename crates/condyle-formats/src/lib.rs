@@ -21,6 +21,7 @@
 //! | BVH skeletons with motion | [`bvh::from_bytes`] | [`bvh::write`] |
 //! | GLB and glTF skeletons with motion; animated scenes | [`glb::read`] | [`glb::write`] |
 //! | GLB characters of a user, given back with a new animation | | [`glb::reanimate`] |
+//! | URDF robot descriptions | [`urdf::from_bytes`] | [`urdf::write`] |
 //! | XML, for readers of models | [`XmlDocument`] | |
 
 pub mod bvh;
@@ -44,11 +45,13 @@ pub mod skeleton;
 pub mod sto;
 pub mod text;
 pub mod trc;
-#[cfg(feature = "opensim")]
+#[cfg(feature = "urdf")]
+pub mod urdf;
+#[cfg(any(feature = "opensim", feature = "urdf"))]
 pub mod xml;
 
 pub use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Subject, nearest};
 pub use condyle_motion::{AngleUnit, Animation, Gap, LengthUnit, Observed, Recording, Table};
 pub use format::{Content, ContentKind, FORMATS, Format, Id, Include};
-#[cfg(feature = "opensim")]
+#[cfg(any(feature = "opensim", feature = "urdf"))]
 pub use xml::{Element, XmlDocument};

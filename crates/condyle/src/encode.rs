@@ -106,6 +106,8 @@ pub fn model(format: &Format, model: &Model) -> Result<Read<Vec<u8>>, Error> {
     match format.id {
         #[cfg(feature = "opensim")]
         Id::OpenSim => Ok(condyle_formats::opensim::write(model).map(String::into_bytes)),
+        #[cfg(feature = "robots")]
+        Id::Urdf => Ok(condyle_formats::urdf::write(model).map(String::into_bytes)),
         _ => {
             let _ = model;
             Err(not_written(format, ContentKind::Model))

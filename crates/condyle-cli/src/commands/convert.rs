@@ -75,7 +75,7 @@ fn moves(format: &Format) -> bool {
 
 /// Whether a format of other programs holds models as trees of plain joints.
 fn of_models(format: &Format) -> bool {
-    matches!(format.id, Id::OpenSim)
+    matches!(format.id, Id::OpenSim | Id::Urdf)
 }
 
 /// What can be written.
@@ -86,7 +86,7 @@ const WRITTEN: [ContentKind; 4] =
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
                      to .glb or .bvh (an animation), .trc or .c3d (the model's markers), and poses (.json) to all \
                      of these, with --rate as key poses; a skeleton with its motion (.bvh, .glb, .gltf) to all of these \
-                     without --model, and as a model; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved), .glb, .bvh or .osim; \
+                     without --model, and as a model; a model (.osim, .urdf, .toml, .json, or a shipped one by name) to .toml, .json (resolved), .glb, .bvh, .osim or .urdf; \
                      a recording (.trc, .c3d) to .trc, .c3d or .csv, with --analog its channels to .csv, .mot or .sto";
 
 impl Convert {

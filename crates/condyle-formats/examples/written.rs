@@ -1,10 +1,11 @@
 //! A model as another program's file, and beside it what that program should answer: joint values and the
 //! transforms of all bodies at random legal poses. The scripts in `oracles/written/` compare.
 //!
-//! `cargo run --example written -- MODEL FORMAT OUT [POSES]` writes OUT and OUT.json.
+//! `cargo run -p condyle-formats --example written -- MODEL FORMAT OUT [POSES]` writes OUT and OUT.json. MODEL is a
+//! file that needs no other: shipped models by `condyle convert NAME NAME.json`.
 
-use condyle::formats::opensim;
 use condyle::formats::plain::{Legal, Written};
+use condyle::formats::{opensim, urdf};
 use condyle::math::{Affine, Quat};
 use condyle::{Model, open};
 use serde_json::{Map, Value, json};
@@ -17,15 +18,18 @@ fn main() {
         std::process::exit(2);
     };
     let poses = rest.first().and_then(|n| n.parse().ok()).unwrap_or(100);
-    let model = match open::model(Path::new(model)) {
-        Ok(read) => read.value,
-        Err(error) => {
-            eprintln!("{error}");
+    let model = match model_of(model) {
+        Ok(model) => model,
+        Err(message) => {
+            eprintln!("{model}: {message}");
             std::process::exit(1);
         }
     };
     let written = match format.as_str() {
         "osim" => opensim::written(&model),
+        "urdf" => urdf::written(&model),
+        // The model's own coordinates, for comparing how a file is read.
+        "none" => Written { text: String::new(), ..opensim::written(&model) },
         other => {
             eprintln!("no such format: {other}");
             std::process::exit(2);
@@ -37,6 +41,18 @@ fn main() {
     if let Err(error) = saved {
         eprintln!("{out}: {error}");
         std::process::exit(1);
+    }
+}
+
+fn model_of(path: &str) -> Result<Model, String> {
+    let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
+    let format = Format::of_bytes(&bytes).ok_or("no format is recognised")?;
+    let read = format
+        .read(&bytes, &mut |path| std::fs::read_to_string(path).map_err(|error| error.to_string()));
+    match read.map_err(|error| error.to_string())?.value {
+        Content::Model(model) => Ok(model),
+        Content::Document(document) => Ok(document.model),
+        other => Err(format!("it holds {}", other.kind().name())),
     }
 }
 
@@ -71,5 +87,5 @@ fn answer(model: &Model, written: &Written, count: usize) -> Value {
         }));
     }
     let remarks = written.remarks.iter().map(|r| format!("{}: {}", r.code, r.sentence()));
-    json!({ "model": model.name(), "remarks": remarks.collect::<Vec<_>>(), "poses": poses })
+    json!({ "model": model.name(), "remarks": remarks.collect::<Vec<_>>(), "base": written.base.to_rows()[..12], "poses": poses })
 }
