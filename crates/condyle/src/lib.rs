@@ -275,6 +275,8 @@ pub mod open;
 pub mod picture;
 #[cfg(feature = "document")]
 pub mod posing;
+#[cfg(feature = "document")]
+pub mod retargeting;
 pub mod scaling;
 #[cfg(feature = "glb")]
 pub mod scene;

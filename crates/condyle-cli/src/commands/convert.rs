@@ -2,6 +2,7 @@
 
 mod dropped;
 mod includes;
+mod onto;
 
 use super::{Angles, Limits, Outcome};
 use crate::failure::{Failure, warn_about, warned};
@@ -57,6 +58,8 @@ pub(crate) struct Convert {
     /// The format of the output; by default that of its ending.
     #[arg(long, value_parser = format::names(&WRITTEN))]
     to: Option<String>,
+    #[command(flatten)]
+    onto: onto::Onto,
 }
 
 /// How coordinates of one number go from key pose to key pose.
@@ -92,8 +95,12 @@ const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .cs
 impl Convert {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
         let target = self.target()?;
-        let inputs: Vec<&Path> =
-            [&self.input].into_iter().chain(&self.model).map(PathBuf::as_path).collect();
+        let inputs: Vec<&Path> = [&self.input]
+            .into_iter()
+            .chain(&self.model)
+            .chain(self.onto.inputs())
+            .map(PathBuf::as_path)
+            .collect();
         output::check_distinct(&inputs, &[&self.output])?;
         let read = match open::content(&self.input, None) {
             Err(error) if matches!(error.cause, Cause::Format { .. }) => {
@@ -299,13 +306,18 @@ impl Convert {
         }
     }
 
-    /// A motion of a model in another format, legal if asked for.
+    /// A motion of a model, or what it is for another figure, in another format, legal if asked for.
     fn moved(
         &self,
         model: &Model,
         mut motion: Motion,
         target: &Format,
     ) -> Result<Vec<u8>, Failure> {
+        if let Some((onto, carried)) =
+            self.onto.carried(&self.input, model, &motion, self.limits)?
+        {
+            return self.written(&onto, carried, target);
+        }
         if self.limits == Limits::On {
             let legal::Kept { solved, lost } = legal::keep(model, &mut motion);
             let all = motion.frames.len();
@@ -322,6 +334,16 @@ impl Convert {
                 ));
             }
         }
+        self.written(model, motion, target)
+    }
+
+    /// A motion of a model in another format.
+    fn written(
+        &self,
+        model: &Model,
+        mut motion: Motion,
+        target: &Format,
+    ) -> Result<Vec<u8>, Failure> {
         match target.id {
             Id::Glb => return self.scene(model, &motion),
             Id::Bvh => return self.skeleton(target, model, &motion),
