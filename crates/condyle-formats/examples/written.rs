@@ -4,24 +4,23 @@
 //! `cargo run -p condyle-formats --example written -- MODEL FORMAT OUT [POSES]` writes OUT and OUT.json. MODEL is a
 //! file that needs no other: shipped models by `condyle convert NAME NAME.json`.
 
-use condyle::formats::plain::{Legal, Written};
-use condyle::formats::{opensim, urdf};
-use condyle::math::{Affine, Quat};
-use condyle::{Model, open};
+use condyle_formats::plain::{Legal, Written};
+use condyle_formats::{Content, Format, opensim, urdf};
+use condyle_math::{Affine, Quat};
+use condyle_model::Model;
 use serde_json::{Map, Value, json};
-use std::path::Path;
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [model, format, out, rest @ ..] = &arguments[..] else {
+    let [model_path, format, out, rest @ ..] = &arguments[..] else {
         eprintln!("usage: written MODEL FORMAT OUT [POSES]");
         std::process::exit(2);
     };
     let poses = rest.first().and_then(|n| n.parse().ok()).unwrap_or(100);
-    let model = match model_of(model) {
+    let model = match model_of(model_path) {
         Ok(model) => model,
         Err(message) => {
-            eprintln!("{model}: {message}");
+            eprintln!("{model_path}: {message}");
             std::process::exit(1);
         }
     };
