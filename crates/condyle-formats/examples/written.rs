@@ -5,9 +5,10 @@
 //! file that needs no other: shipped models by `condyle convert NAME NAME.json`.
 
 use condyle_formats::plain::{Legal, Written};
-use condyle_formats::{Content, Format, opensim, urdf};
+use condyle_formats::{Content, Format, mjcf, opensim, urdf, usd};
 use condyle_math::{Affine, Quat};
-use condyle_model::Model;
+use condyle_model::{Mode, Model};
+use condyle_motion::Motion;
 use serde_json::{Map, Value, json};
 
 fn main() {
@@ -27,6 +28,8 @@ fn main() {
     let written = match format.as_str() {
         "osim" => opensim::written(&model),
         "urdf" => urdf::written(&model),
+        "mjcf" => mjcf::written(&model),
+        "usda" => animated(&model, poses),
         // The model's own coordinates, for comparing how a file is read.
         "none" => Written { text: String::new(), ..opensim::written(&model) },
         other => {
@@ -41,6 +44,21 @@ fn main() {
         eprintln!("{out}: {error}");
         std::process::exit(1);
     }
+}
+
+/// A motion through the poses that are answered.
+fn animated(model: &Model, count: usize) -> Written {
+    let mut legal = Legal::new(model, 2024);
+    let frames: Vec<Vec<f64>> = (0..count).map(|_| legal.next_pose().0).collect();
+    let motion = Motion { times: (0..count).map(|i| i as f64 / 30.0).collect(), frames };
+    let text = match usd::write(model, &motion, Mode::Open) {
+        Ok(read) => read,
+        Err(error) => {
+            eprintln!("{error}");
+            std::process::exit(1);
+        }
+    };
+    Written { text: text.value, remarks: text.warnings, ..opensim::written(model) }
 }
 
 fn model_of(path: &str) -> Result<Model, String> {

@@ -150,6 +150,10 @@ pub enum Id {
     OpenSim,
     /// Robot descriptions.
     Urdf,
+    /// Models of MuJoCo.
+    Mjcf,
+    /// Scenes of Universal Scene Description.
+    Usda,
     /// Marker recordings.
     Trc,
     /// Marker recordings with analog channels and events.
@@ -249,6 +253,28 @@ pub const FORMATS: &[Format] = &[
         writes: &[ContentKind::Model],
         sniff: |bytes| starts(bytes, 4096).contains("<robot"),
         read: |bytes, _| urdf::from_bytes(bytes).map(|read| read.map(Content::Model)),
+    },
+    #[cfg(feature = "mjcf")]
+    Format {
+        id: Id::Mjcf,
+        name: "mjcf",
+        title: "models of MuJoCo",
+        endings: &["mjcf"],
+        reads: &[],
+        writes: &[ContentKind::Model],
+        sniff: |bytes| starts(bytes, 4096).contains("<mujoco"),
+        read: |_, _| Err(Error::new("mjcf/not-read", "models of MuJoCo are written, not read")),
+    },
+    #[cfg(feature = "usd")]
+    Format {
+        id: Id::Usda,
+        name: "usda",
+        title: "UsdSkel scenes",
+        endings: &["usda"],
+        reads: &[],
+        writes: &[ContentKind::Scene],
+        sniff: |bytes| bytes.starts_with(b"#usda"),
+        read: |_, _| Err(Error::new("usd/not-read", "scenes are written, not read")),
     },
     Format {
         id: Id::Trc,

@@ -22,6 +22,8 @@
 //! | GLB and glTF skeletons with motion; animated scenes | [`glb::read`] | [`glb::write`] |
 //! | GLB characters of a user, given back with a new animation | | [`glb::reanimate`] |
 //! | URDF robot descriptions | [`urdf::from_bytes`] | [`urdf::write`] |
+//! | MJCF models of MuJoCo | | [`mjcf::write`] |
+//! | UsdSkel scenes (USDA) | | [`usd::write`] |
 //! | XML, for readers of models | [`XmlDocument`] | |
 
 pub mod bvh;
@@ -35,6 +37,8 @@ pub mod exchange;
 mod format;
 #[cfg(feature = "glb")]
 pub mod glb;
+#[cfg(feature = "mjcf")]
+pub mod mjcf;
 #[cfg(feature = "opensim")]
 pub mod opensim;
 #[cfg(feature = "plain")]
@@ -47,6 +51,8 @@ pub mod text;
 pub mod trc;
 #[cfg(feature = "urdf")]
 pub mod urdf;
+#[cfg(feature = "usd")]
+pub mod usd;
 #[cfg(any(feature = "opensim", feature = "urdf"))]
 pub mod xml;
 
