@@ -12,7 +12,7 @@ use crate::opensim::{self, setup};
 use crate::skeleton::Assumed;
 #[cfg(feature = "document")]
 use crate::text::utf8;
-use crate::{Animation, Error, Read, Recording, Table, asf, bvh, c3d, csv, sto, trc};
+use crate::{Animation, Error, Read, Recording, Table, asf, bvh, c3d, csv, skel, sto, trc};
 #[cfg(feature = "poses")]
 use crate::{
     exchange,
@@ -166,6 +166,8 @@ pub enum Id {
     Fbx,
     /// Skeletons with motion of Biovision.
     Bvh,
+    /// Skeletons of the course CSE 169.
+    Skel,
     /// Skeletons of Acclaim.
     Asf,
     /// Takes of Acclaim's skeletons.
@@ -347,6 +349,16 @@ pub const FORMATS: &[Format] = &[
         },
     },
     Format {
+        id: Id::Skel,
+        name: "skel",
+        title: "skeletons of the course CSE 169",
+        endings: &["skel"],
+        reads: &[ContentKind::Model],
+        writes: &[],
+        sniff: |bytes| keyword(bytes).starts_with("balljoint"),
+        read: |bytes, _| Ok(skel::read(bytes, &Assumed::default())?.map(Content::Model)),
+    },
+    Format {
         id: Id::Asf,
         name: "asf",
         title: "skeletons of Acclaim",
@@ -444,6 +456,7 @@ impl Format {
     ) -> Result<Read<Content>, Error> {
         match self.id {
             Id::Bvh => animation(bvh::from_bytes_with(bytes, assumed)),
+            Id::Skel => Ok(skel::read(bytes, assumed)?.map(Content::Model)),
             #[cfg(feature = "fbx")]
             Id::Fbx => {
                 let options = glb::Options { assumed: *assumed, ..glb::Options::default() };

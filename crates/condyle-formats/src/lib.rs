@@ -19,6 +19,7 @@
 //! | CSV tables | [`csv::read`] | [`csv::write`] |
 //! | OpenSim models | [`opensim::model::read`] | [`opensim::write`] |
 //! | OpenSim inverse kinematics setups | [`opensim::setup`] | |
+//! | SKEL skeletons of CSE 169 | [`skel::read`] | |
 //! | ASF skeletons, and AMC takes of them | [`asf::read`], [`asf::with_skeleton`] | |
 //! | BVH skeletons with motion | [`bvh::from_bytes`] | [`bvh::write`] |
 //! | FBX skeletons with motion | `fbx::read` | |
@@ -46,6 +47,7 @@ pub mod opensim;
 pub mod plain;
 #[cfg(feature = "poses")]
 pub mod poses;
+pub mod skel;
 pub mod skeleton;
 pub mod sto;
 pub mod text;

@@ -20,7 +20,7 @@ pub(super) struct Figure {
     pub(super) model: Model,
     /// Of each bone by its name in lower case: for each of its tokens the place among the stored numbers,
     /// and whether it is an angle.
-    pub(super) places: HashMap<String, Vec<(usize, bool)>>,
+    pub(super) places: HashMap<String, Vec<Option<(usize, bool)>>>,
     /// Metres in a unit of length.
     pub(super) unit: f64,
     pub(super) degrees: bool,
@@ -304,23 +304,23 @@ fn scale(skeleton: &mut Skeleton, unit: f64) {
 fn places(
     written: &read::Skeleton,
     tree: &Tree,
-) -> (HashMap<String, Vec<(usize, bool)>>, Vec<(usize, usize)>) {
+) -> (HashMap<String, Vec<Option<(usize, bool)>>>, Vec<(usize, usize)>) {
     let mut places = HashMap::new();
     let mut steps = vec![];
     let mut next = 0;
     for (bone, _) in tree {
         let source = written_of(written, *bone);
-        let mut own = vec![(0, false); source.tokens.len()];
+        let mut own = vec![None; source.tokens.len()];
         let (tokens, length) = coordinates(source);
         for (number, token) in tokens {
-            own[number] = (next, matches!(token, Token::Turn(_)));
+            own[number] = Some((next, matches!(token, Token::Turn(_))));
             if let (None, Token::Move(axis)) = (bone, token) {
                 steps.push((next, axis));
             }
             next += 1;
         }
-        if let Some(number) = length {
-            own[number] = (next, false);
+        if let (Some(number), Some(_)) = (length, bone) {
+            own[number] = Some((next, false));
             next += 1;
         }
         // A second `l` of a bone is none.

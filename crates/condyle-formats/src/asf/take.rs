@@ -164,7 +164,7 @@ impl<'a> Frames<'a> {
         let mut count = 0;
         for word in row.words().skip(1) {
             count += 1;
-            let Some((place, is_angle)) = places.get(count - 1) else { continue };
+            let Some(Some((place, is_angle))) = places.get(count - 1) else { continue };
             let number = value(word).ok_or_else(|| {
                 let message = format!("`{word:.40}` is no number");
                 Error::new("amc/number", message).at(row.line.place_of(word))
