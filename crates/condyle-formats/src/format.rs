@@ -12,9 +12,13 @@ use crate::opensim::{self, setup};
 use crate::skeleton::Assumed;
 #[cfg(feature = "document")]
 use crate::text::utf8;
+<<<<<<< HEAD
 #[cfg(feature = "urdf")]
 use crate::urdf;
 use crate::{Animation, Error, Read, Recording, Table, bvh, c3d, csv, sto, trc};
+=======
+use crate::{Animation, Error, Read, Recording, Table, asf, bvh, c3d, csv, skel, sto, trc};
+>>>>>>> main
 #[cfg(feature = "poses")]
 use crate::{
     exchange,
@@ -170,8 +174,16 @@ pub enum Id {
     Glb,
     /// glTF in JSON, and the files of VRM, which are GLB.
     Gltf,
+    /// Scenes of Autodesk's programs.
+    Fbx,
     /// Skeletons with motion of Biovision.
     Bvh,
+    /// Skeletons of the course CSE 169.
+    Skel,
+    /// Skeletons of Acclaim.
+    Asf,
+    /// Takes of Acclaim's skeletons.
+    Amc,
 }
 
 /// The text of another file by its path as seen from the one that is read; else a sentence.
@@ -332,6 +344,19 @@ pub const FORMATS: &[Format] = &[
         },
         read: |bytes, _| csv::from_bytes(bytes).map(|read| read.map(Content::Table)),
     },
+    #[cfg(feature = "fbx")]
+    Format {
+        id: Id::Fbx,
+        name: "fbx",
+        title: "FBX: skeletons and animations",
+        endings: &["fbx"],
+        reads: &[ContentKind::Motion, ContentKind::Model],
+        writes: &[],
+        sniff: |bytes| {
+            bytes.starts_with(b"Kaydara FBX Binary") || starts(bytes, 64).starts_with("; FBX ")
+        },
+        read: |bytes, _| animation(crate::fbx::from_bytes(bytes)),
+    },
     #[cfg(feature = "glb")]
     Format {
         id: Id::Glb,
@@ -369,6 +394,39 @@ pub const FORMATS: &[Format] = &[
         },
     },
     Format {
+        id: Id::Skel,
+        name: "skel",
+        title: "skeletons of the course CSE 169",
+        endings: &["skel"],
+        reads: &[ContentKind::Model],
+        writes: &[],
+        sniff: |bytes| keyword(bytes).starts_with("balljoint"),
+        read: |bytes, _| Ok(skel::read(bytes, &Assumed::default())?.map(Content::Model)),
+    },
+    Format {
+        id: Id::Asf,
+        name: "asf",
+        title: "skeletons of Acclaim",
+        endings: &["asf"],
+        reads: &[ContentKind::Model],
+        writes: &[],
+        sniff: |bytes| keyword(bytes).starts_with(":version"),
+        read: |bytes, _| Ok(asf::read(bytes, &Assumed::default())?.map(Content::Model)),
+    },
+    Format {
+        id: Id::Amc,
+        name: "amc",
+        title: "takes of Acclaim's skeletons",
+        endings: &["amc"],
+        reads: &[ContentKind::Motion, ContentKind::Model],
+        writes: &[],
+        sniff: |bytes| keyword(bytes).starts_with(":fully-specified"),
+        read: |_, _| {
+            let message = "a take means nothing without its skeleton, an .asf file";
+            Err(Error::new("amc/skeleton", message).with_help("read it with its skeleton"))
+        },
+    },
+    Format {
         id: Id::Bvh,
         name: "bvh",
         title: "skeletons with motion of Biovision",
@@ -382,6 +440,13 @@ pub const FORMATS: &[Format] = &[
 
 fn animation(read: Result<Read<Animation>, Error>) -> Result<Read<Content>, Error> {
     read.map(|read| read.map(|animation| Content::Animation(Box::new(animation))))
+}
+
+/// The first line that is no comment, in lower case.
+fn keyword(bytes: &[u8]) -> String {
+    let text = starts(bytes, 4096).to_ascii_lowercase();
+    let line = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
+    line.unwrap_or("").to_owned()
 }
 
 /// The beginning of a file as text, without a byte order mark.
@@ -436,6 +501,13 @@ impl Format {
     ) -> Result<Read<Content>, Error> {
         match self.id {
             Id::Bvh => animation(bvh::from_bytes_with(bytes, assumed)),
+            Id::Skel => Ok(skel::read(bytes, assumed)?.map(Content::Model)),
+            #[cfg(feature = "fbx")]
+            Id::Fbx => {
+                let options = glb::Options { assumed: *assumed, ..glb::Options::default() };
+                animation(crate::fbx::read(bytes, &options))
+            }
+            Id::Asf => Ok(asf::read(bytes, assumed)?.map(Content::Model)),
             #[cfg(feature = "glb")]
             Id::Glb | Id::Gltf => {
                 let options = glb::Options { assumed: *assumed, ..glb::Options::default() };

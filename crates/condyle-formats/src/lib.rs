@@ -5,7 +5,8 @@
 //! right. Inside, lengths are metres; a recording in millimetres is converted at the border. No
 //! input makes a reader panic, recurse, or allocate more than a small multiple of its size.
 //!
-//! Tables (TRC, STO, MOT, CSV) and C3D are always there; `document`, `glb`, `opensim` and `poses` are features.
+//! Tables (TRC, STO, MOT, CSV) and C3D are always there; `document`, `glb`, `opensim` and `poses` are features, and
+//! `fbx`, which is off by default: it needs a C compiler.
 //!
 //! | format | read | write |
 //! | --- | --- | --- |
@@ -18,7 +19,10 @@
 //! | CSV tables | [`csv::read`] | [`csv::write`] |
 //! | OpenSim models | [`opensim::model::read`] | [`opensim::write`] |
 //! | OpenSim inverse kinematics setups | [`opensim::setup`] | |
+//! | SKEL skeletons of CSE 169 | [`skel::read`] | |
+//! | ASF skeletons, and AMC takes of them | [`asf::read`], [`asf::with_skeleton`] | |
 //! | BVH skeletons with motion | [`bvh::from_bytes`] | [`bvh::write`] |
+//! | FBX skeletons with motion | `fbx::read` | |
 //! | GLB and glTF skeletons with motion; animated scenes | [`glb::read`] | [`glb::write`] |
 //! | GLB characters of a user, given back with a new animation | | [`glb::reanimate`] |
 //! | URDF robot descriptions | [`urdf::from_bytes`] | [`urdf::write`] |
@@ -26,6 +30,7 @@
 //! | UsdSkel scenes (USDA) | | [`usd::write`] |
 //! | XML, for readers of models | [`XmlDocument`] | |
 
+pub mod asf;
 pub mod bvh;
 pub mod c3d;
 pub mod csv;
@@ -34,6 +39,8 @@ pub mod csv;
 pub mod document;
 #[cfg(feature = "poses")]
 pub mod exchange;
+#[cfg(feature = "fbx")]
+pub mod fbx;
 mod format;
 #[cfg(feature = "glb")]
 pub mod glb;
@@ -45,6 +52,7 @@ pub mod opensim;
 pub mod plain;
 #[cfg(feature = "poses")]
 pub mod poses;
+pub mod skel;
 pub mod skeleton;
 pub mod sto;
 pub mod text;

@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 pub(crate) struct Convert {
     /// A motion (.mot, .sto, .csv), poses (.json, as `fk` takes them), a model (.osim, .toml, a
-    /// resolved one in .json, or the name of a shipped one), a skeleton with its motion (.bvh, .glb, .gltf) or a
+    /// resolved one in .json, or the name of a shipped one), a skeleton with its motion (.bvh, .amc, .glb, .gltf, .fbx) or a
     /// marker recording (.trc, .c3d).
     input: PathBuf,
     /// Where to write; `-` is standard output and needs --to.
@@ -87,9 +87,15 @@ const WRITTEN: [ContentKind; 4] =
 
 /// The supported conversions, for the message about any other.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
+<<<<<<< HEAD
                      to .glb, .bvh or .usda (an animation), .trc or .c3d (the model's markers), and poses (.json) to all \
                      of these, with --rate as key poses; a skeleton with its motion (.bvh, .glb, .gltf) to all of these \
                      without --model, and as a model; a model (.osim, .urdf, .toml, .json, or a shipped one by name) to .toml, .json (resolved), .glb, .bvh, .osim, .urdf, .mjcf or .usda; \
+=======
+                     to .glb or .bvh (an animation), .trc or .c3d (the model's markers), and poses (.json) to all \
+                     of these, with --rate as key poses; a skeleton with its motion (.bvh, .amc, .glb, .gltf, .fbx) to all of these \
+                     without --model, and as a model; all of these motions for another figure with --onto; a model (.osim, .toml, .json, .asf, or a shipped one by name) to .toml, .json (resolved), .glb, .bvh or .osim; \
+>>>>>>> main
                      a recording (.trc, .c3d) to .trc, .c3d or .csv, with --analog its channels to .csv, .mot or .sto";
 
 impl Convert {
@@ -102,6 +108,9 @@ impl Convert {
             .map(PathBuf::as_path)
             .collect();
         output::check_distinct(&inputs, &[&self.output])?;
+        if let Some(model) = &self.model {
+            open::skeleton_is(model);
+        }
         let read = match open::content(&self.input, None) {
             Err(error) if matches!(error.cause, Cause::Format { .. }) => {
                 return Err(self.unknown(target, ""));
@@ -316,6 +325,11 @@ impl Convert {
         if let Some((onto, carried)) =
             self.onto.carried(&self.input, model, &motion, self.limits)?
         {
+            if let Some(path) = self.onto.onto.as_ref().filter(|path| open::is_gltf(path))
+                && target.id == Id::Glb
+            {
+                return Ok(warned(path, open::reanimated(path, &carried, &self.name())?));
+            }
             return self.written(&onto, carried, target);
         }
         if self.limits == Limits::On {

@@ -16,6 +16,9 @@ use std::path::{Path, PathBuf};
 pub(super) struct Onto {
     /// Carry the motion over to this figure: a model, or a file that holds a skeleton.
     ///
+    /// A skinned character (.glb, .gltf, .vrm) written to .glb comes back as it is, with the motion in place of its
+    /// animations.
+    ///
     /// Limbs point where they do in the source, whatever the postures in which the two rest and however
     /// long their limbs are. The bones are recognised by their names.
     #[arg(long, value_name = "TARGET")]
@@ -47,7 +50,7 @@ impl Onto {
             Some(path) => Some(warned(path, open::names(path)?)),
             None => None,
         };
-        let Animation { model: target, .. } = warned(onto, open::animation(onto)?);
+        let Animation { model: target, .. } = warned(onto, open::figure(onto)?);
         let known = |path: &Path, model: &Model| {
             let known = recognise(model, table.as_ref())?;
             warn_about(path, &known.warnings);
@@ -71,6 +74,9 @@ impl Onto {
         Ok(Some((target, motion)))
     }
 }
+
+/// So many coordinates at limits are named.
+const MOST_NAMED: usize = 6;
 
 /// What is said once: tables, parts, how near, at limits, feet.
 fn told(figures: [(&Model, &Recognised); 2], report: &Report, options: Options) -> String {
@@ -100,20 +106,26 @@ fn told(figures: [(&Model, &Recognised); 2], report: &Report, options: Options) 
             let _ = writeln!(text, "  only the {which} has: {}", names.join(", "));
         }
     }
-    let inside = report.limited > 0 && report.limited < report.frames;
-    let head = if inside { ", inside limits" } else { "" };
+    let inside = options.limits;
+    let head = if inside { ", mean inside limits and in what share of frames" } else { "" };
     let _ = writeln!(text, "  angle to what was asked for: mean, 95 %{head}");
     let line = |fit: &Fit| {
         let degrees = |angle: f64| format!("{:.2}°", angle.to_degrees());
         let kind = if fit.line { "" } else { " (turned)" };
-        let within = if inside { format!("  {:>7}", degrees(fit.inside)) } else { String::new() };
+        let within = match (inside, fit.inside.is_finite()) {
+            (true, true) => format!("  {:>7} {:>4.0} %", degrees(fit.inside), fit.share * 100.0),
+            (true, false) => "        -    0 %".to_owned(),
+            _ => String::new(),
+        };
         let name = format!("{}{kind}", fit.name);
         format!("    {name:<18} {:>7} {:>7}{within}\n", degrees(fit.mean), degrees(fit.most))
     };
     report.fits.iter().for_each(|fit| text.push_str(&line(fit)));
-    if options.limits {
-        let share = report.limited as f64 / report.frames.max(1) as f64 * 100.0;
-        let _ = writeln!(text, "  {} frames ({share:.0} %) are at a limit", report.limited);
+    if !report.limited.is_empty() {
+        let share = |frames: &usize| *frames as f64 / report.frames.max(1) as f64 * 100.0;
+        let names = report.limited.iter().map(|(name, at)| format!("{name} {:.0} %", share(at)));
+        let names: Vec<String> = names.take(MOST_NAMED).collect();
+        let _ = writeln!(text, "  frames at a limit, by coordinate: {}", names.join(", "));
     }
     let sliding = report.sliding;
     if sliding.stands > 0 {
