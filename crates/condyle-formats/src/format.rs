@@ -12,13 +12,9 @@ use crate::opensim::{self, setup};
 use crate::skeleton::Assumed;
 #[cfg(feature = "document")]
 use crate::text::utf8;
-<<<<<<< HEAD
 #[cfg(feature = "urdf")]
 use crate::urdf;
-use crate::{Animation, Error, Read, Recording, Table, bvh, c3d, csv, sto, trc};
-=======
 use crate::{Animation, Error, Read, Recording, Table, asf, bvh, c3d, csv, skel, sto, trc};
->>>>>>> main
 #[cfg(feature = "poses")]
 use crate::{
     exchange,

@@ -87,15 +87,9 @@ const WRITTEN: [ContentKind; 4] =
 
 /// The supported conversions, for the message about any other.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
-<<<<<<< HEAD
                      to .glb, .bvh or .usda (an animation), .trc or .c3d (the model's markers), and poses (.json) to all \
-                     of these, with --rate as key poses; a skeleton with its motion (.bvh, .glb, .gltf) to all of these \
-                     without --model, and as a model; a model (.osim, .urdf, .toml, .json, or a shipped one by name) to .toml, .json (resolved), .glb, .bvh, .osim, .urdf, .mjcf or .usda; \
-=======
-                     to .glb or .bvh (an animation), .trc or .c3d (the model's markers), and poses (.json) to all \
                      of these, with --rate as key poses; a skeleton with its motion (.bvh, .amc, .glb, .gltf, .fbx) to all of these \
-                     without --model, and as a model; all of these motions for another figure with --onto; a model (.osim, .toml, .json, .asf, or a shipped one by name) to .toml, .json (resolved), .glb, .bvh or .osim; \
->>>>>>> main
+                     without --model, and as a model; all of these motions for another figure with --onto; a model (.osim, .urdf, .toml, .json, .asf, or a shipped one by name) to .toml, .json (resolved), .glb, .bvh, .osim, .urdf, .mjcf or .usda; \
                      a recording (.trc, .c3d) to .trc, .c3d or .csv, with --analog its channels to .csv, .mot or .sto";
 
 impl Convert {
