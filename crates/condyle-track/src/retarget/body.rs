@@ -93,6 +93,8 @@ pub enum Part {
     Shank(Side),
     /// The foot, from the ankle.
     Foot(Side),
+    /// The knee, where it is not the joint of the segment that is the shank.
+    Knee(Side),
     /// The ankle, where it is not the joint of the segment that is the foot.
     Ankle(Side),
     /// The ball of the foot: the point above the sole that tells where the foot points.
@@ -126,6 +128,7 @@ impl Part {
             Self::Thigh(side) => sided("thigh", side),
             Self::Shank(side) => sided("shank", side),
             Self::Foot(side) => sided("foot", side),
+            Self::Knee(side) => sided("knee", side),
             Self::Ankle(side) => sided("ankle", side),
             Self::Ball(side) => sided("ball", side),
             Self::Toes(side) => sided("toes", side),
@@ -146,6 +149,7 @@ impl Part {
                 Self::Thigh(side),
                 Self::Shank(side),
                 Self::Foot(side),
+                Self::Knee(side),
                 Self::Ankle(side),
                 Self::Ball(side),
                 Self::Toes(side),
@@ -175,6 +179,7 @@ impl Part {
         matches!(
             self,
             Self::HandTip(_)
+                | Self::Knee(_)
                 | Self::Ankle(_)
                 | Self::Ball(_)
                 | Self::ToeTip(_)
@@ -227,13 +232,14 @@ impl Body {
         self.parts.iter().map(|(part, anchor)| (*part, *anchor))
     }
 
-    /// Where a part begins: its joint, that of a foot the ankle.
+    /// Where a part begins: its joint, that of a shank the knee and that of a foot the ankle.
     pub(crate) fn start(&self, part: Part) -> Option<Anchor> {
-        let ankle = match part {
+        let told = match part {
+            Part::Shank(side) => self.get(Part::Knee(side)),
             Part::Foot(side) => self.get(Part::Ankle(side)),
             _ => None,
         };
-        ankle.or_else(|| self.get(part))
+        told.or_else(|| self.get(part))
     }
 
     /// Where a part of a limb ends: the joint of the next, or a tip.
@@ -247,7 +253,7 @@ impl Body {
                 Part::HandTip(side),
                 Part::Finger(side, Finger::Index, 0),
             ]),
-            Part::Thigh(side) => first(&[Part::Shank(side)]),
+            Part::Thigh(side) => first(&[Part::Knee(side), Part::Shank(side)]),
             Part::Shank(side) => first(&[Part::Ankle(side), Part::Foot(side)]),
             Part::Foot(side) => first(&[Part::Ball(side), Part::Toes(side), Part::ToeTip(side)]),
             Part::Toes(side) => first(&[Part::ToeTip(side)]),

@@ -6,8 +6,9 @@ use super::sampled::Sampled;
 use super::stance::unit;
 use super::{Humanoid, Options, Posed};
 use condyle_math::{Quat, Vec3};
-use condyle_model::CoordinateKind;
+use condyle_model::{CoordinateId, CoordinateKind, Program, SegmentId};
 use condyle_motion::Motion;
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 /// How far a part is off, over all frames, in radians.
@@ -21,8 +22,11 @@ pub struct Fit {
     pub mean: f64,
     /// The angle that 95 % of the frames are below.
     pub most: f64,
-    /// The mean over the frames that are inside all limits; not a number where there are none.
+    /// The mean over the frames in which nothing that moves the part is at a limit; not a number where there is
+    /// none.
     pub inside: f64,
+    /// The share of these frames.
+    pub share: f64,
 }
 
 /// How far points of feet move while they stand, in metres: from where each stand began, along the ground.
@@ -47,8 +51,8 @@ pub struct Report {
     pub unmatched: [Vec<Part>; 2],
     /// The number of frames.
     pub frames: usize,
-    /// How many of them are at a limit of the target; none without limits.
-    pub limited: usize,
+    /// Coordinates that are at a limit, with the number of frames, most first; none without limits.
+    pub limited: Vec<(String, usize)>,
     /// The target's size by the source's.
     pub size: f64,
     /// Feet that stand.
@@ -66,19 +70,34 @@ pub(super) fn report(
     options: Options,
 ) -> Report {
     let mut posed = Posed::new(target.model);
-    let rows = if options.limits { posed.program.limit_row_len() } else { 0 };
+    let program = Program::compile(target.model);
+    let rows = if options.limits { program.limit_row_len() } else { 0 };
     let mut lines: Vec<Vec<f64>> = vec![vec![]; plan.lines.len()];
     let mut turns: Vec<Vec<f64>> = vec![vec![]; plan.turns.len()];
     let points = foot_points(target, sampled);
     let mut places: Vec<Vec<Vec3>> = vec![vec![]; points.len()];
     let bounds = bounds(target, options);
-    let mut limited = vec![];
+    // For each frame the directions that a limit holds, and for each coordinate in how many frames.
+    let mut held: Vec<BTreeSet<u32>> = vec![];
+    let mut counts = vec![0_usize; target.model.coordinates().len()];
     for (frame, stored) in motion.frames.iter().enumerate() {
         let Ok(pose) = posed.at(stored) else { continue };
-        let on_bound = bounds.iter().any(|&(place, lower, upper)| {
-            pose.effective()[place] < lower + AT || pose.effective()[place] > upper - AT
-        });
-        limited.push(on_bound || (0..rows).any(|row| pose.limit_row(row) < AT));
+        let mut here = BTreeSet::new();
+        for &(id, lower, upper) in &bounds {
+            let value = target.model.value(pose.effective(), id);
+            if value < lower + AT || value > upper - AT {
+                here.extend(target.model.tangent_range(id).map(|direction| direction as u32));
+            }
+        }
+        for row in (0..rows).filter(|row| pose.limit_row(*row) < AT) {
+            here.extend(program.limit_row_directions(row).iter().map(|(d, _)| *d));
+        }
+        for id in target.model.coordinate_ids() {
+            if target.model.tangent_range(id).any(|d| here.contains(&(d as u32))) {
+                counts[id.index()] += 1;
+            }
+        }
+        held.push(here);
         for (line, angles) in plan.lines.iter().zip(&mut lines) {
             let along = unit(line.to.placed(pose) - line.from.placed(pose));
             angles.push(angle(along, line.wanted[frame]));
@@ -91,15 +110,19 @@ pub(super) fn report(
             places.push(anchor.placed(pose));
         }
     }
+    // A part is at a limit where a joint between it and the root is.
+    let limited = |segment: SegmentId| -> Vec<bool> {
+        let own = program.segment_directions(segment);
+        held.iter().map(|held| own.iter().any(|(d, _)| held.contains(d))).collect()
+    };
     let lines = plan.lines.iter().zip(lines).map(|(line, angles)| {
         let whole = line.weight > 0.5;
-        (whole, fit(&line.name, true, angles, &limited))
+        (whole, fit(&line.name, true, angles, &limited(line.to.segment)))
     });
     let told = |part: Part| matches!(part, Part::Pelvis | Part::Chest | Part::Head | Part::Hand(_));
-    let turns =
-        plan.turns.iter().zip(turns).map(|(turn, angles)| {
-            (told(turn.part), fit(&turn.part.name(), false, angles, &limited))
-        });
+    let turns = plan.turns.iter().zip(turns).map(|(turn, angles)| {
+        (told(turn.part), fit(&turn.part.name(), false, angles, &limited(turn.segment)))
+    });
     let fits = lines.chain(turns).filter(|(told, _)| *told).map(|(_, fit)| fit).collect();
     let slides: Vec<[f64; 2]> = points
         .iter()
@@ -110,6 +133,10 @@ pub(super) fn report(
             runs.iter().map(move |run| [theirs, own].map(|of| slid(of, run, sampled.up)))
         })
         .collect();
+    let ids = target.model.coordinate_ids().zip(&counts).filter(|(_, count)| **count > 0);
+    let mut named: Vec<(String, usize)> =
+        ids.map(|(id, count)| (target.model.coordinate_key(id), *count)).collect();
+    named.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
     let spread = |which: usize| {
         let mut all: Vec<f64> = slides.iter().map(|both| both[which]).collect();
         all.sort_by(f64::total_cmp);
@@ -119,7 +146,7 @@ pub(super) fn report(
         fits,
         unmatched: plan.unmatched.clone(),
         frames: motion.frames.len(),
-        limited: limited.iter().filter(|limited| **limited).count(),
+        limited: named,
         size: sampled.size,
         sliding: Sliding {
             stands: slides.len(),
@@ -149,16 +176,17 @@ fn fit(name: &str, line: bool, angles: Vec<f64>, limited: &[bool]) -> Fit {
     let mean = |sum: (f64, usize)| sum.0 / sum.1 as f64;
     let add = |(sum, count): (f64, usize), angle: &f64| (sum + angle, count + 1);
     let inside = angles.iter().zip(limited).filter(|(_, limited)| !**limited);
-    let inside = mean(inside.map(|(angle, _)| angle).fold((0.0, 0), add));
+    let within = inside.map(|(angle, _)| angle).fold((0.0, 0), add);
+    let (inside, share) = (mean(within), within.1 as f64 / angles.len().max(1) as f64);
     let all = mean(angles.iter().fold((0.0, 0), add));
     let mut sorted = angles;
     sorted.sort_by(f64::total_cmp);
     let most = sorted.get(sorted.len() * 95 / 100).copied().unwrap_or(0.0);
-    Fit { name: name.to_owned(), line, mean: all, most, inside }
+    Fit { name: name.to_owned(), line, mean: all, most, inside, share }
 }
 
 /// The ranges of coordinates that the question moves, where limits hold.
-fn bounds(target: Humanoid<'_>, options: Options) -> Vec<(usize, f64, f64)> {
+fn bounds(target: Humanoid<'_>, options: Options) -> Vec<(CoordinateId, f64, f64)> {
     if !options.limits {
         return vec![];
     }
@@ -171,7 +199,7 @@ fn bounds(target: Humanoid<'_>, options: Options) -> Vec<(usize, f64, f64)> {
     });
     free.map(|id| {
         let (lower, upper) = model.coordinate(id).range.bounds();
-        (model.stored_range(id).start, lower, upper)
+        (id, lower, upper)
     })
     .collect()
 }

@@ -38,6 +38,7 @@
 mod body;
 mod contact;
 mod feet;
+mod held;
 mod measure;
 mod question;
 mod sampled;
@@ -103,7 +104,7 @@ pub fn retarget(
     let to = Stance::of_defaults(target, &mut warnings)?;
     let necks = [source, target].iter().all(|figure| figure.body.get(Part::Neck).is_some());
     let mut sampled = Sampled::new(source, motion, &from, &to, necks)?;
-    sampled.settle_soles();
+    sampled.settle_soles(&from, &to);
     let plan = question::Plan::new(source, target, &from, &to, &sampled);
     let free = plan.solve(target, options, None, None, &motion.times, progress);
     let feet = feet::feet(target, &sampled, &free, options);

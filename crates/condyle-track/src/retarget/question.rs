@@ -4,7 +4,7 @@ use super::body::{Anchor, Part, Side};
 use super::feet::Feet;
 use super::sampled::{Sampled, middle, trunk};
 use super::stance::Stance;
-use super::{Humanoid, Options, Posed};
+use super::{Humanoid, Options, Posed, held};
 use crate::answer::FrameAnswer;
 use crate::target::rotation_of;
 use crate::{
@@ -173,7 +173,7 @@ impl Plan {
         let lead = if start.is_some() { 0 } else { LEAD };
         let targets = self.targets(target, lead, feet);
         let rules = Rules { limits: options.limits, tolerance: 1e-6 };
-        let tracker = Tracker::new(target.model.clone(), targets, rules);
+        let tracker = Tracker::new(target.model.with_locked(held::held(target)), targets, rules);
         let mut scratch = Scratch::new(&tracker);
         let mut answer = FrameAnswer::start(&tracker.defaults);
         let mut frames = Vec::with_capacity(times.len());

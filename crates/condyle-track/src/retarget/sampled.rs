@@ -123,6 +123,18 @@ impl Sampled {
         })
     }
 
+    /// The frames in which both ankle and ball of a foot stand; none where they are too few to tell anything.
+    fn standing_frames(&self, side: Side) -> Vec<usize> {
+        let runs = |part: Part| self.stands.get(&part).map_or(&[][..], Vec::as_slice);
+        let ball = self.ball(side).map_or(&[][..], runs);
+        let both = runs(Part::Foot(side))
+            .iter()
+            .flat_map(Clone::clone)
+            .filter(|frame| ball.iter().any(|run| run.contains(frame)));
+        let frames: Vec<usize> = both.collect();
+        if frames.len() < FEWEST { vec![] } else { frames }
+    }
+
     /// The point that tells how the front of a foot moves.
     pub(super) fn ball(&self, side: Side) -> Option<Part> {
         let toes = [Part::Ball(side), Part::Toes(side), Part::ToeTip(side)];
@@ -130,41 +142,48 @@ impl Sampled {
     }
 
     /// Turns the frames of feet and toes so that they are level where the feet stand: rest postures of
-    /// skeletons hold feet at other angles than people who stand.
-    pub(super) fn settle_soles(&mut self) {
+    /// skeletons hold feet at other angles than people who stand. A foot that then stands at nearly the slope
+    /// of the target's at rest, from ankle to ball, gets that slope.
+    pub(super) fn settle_soles(&mut self, from: &Stance, to: &Stance) {
         for side in Side::BOTH {
-            let Some(ball) = self.ball(side) else { continue };
-            let (Some(a), Some(b)) = (self.stands.get(&Part::Foot(side)), self.stands.get(&ball))
-            else {
-                continue;
-            };
-            let frames: Vec<usize> = a
-                .iter()
-                .flat_map(Clone::clone)
-                .filter(|frame| b.iter().any(|run| run.contains(frame)))
-                .collect();
+            let frames = self.standing_frames(side);
             for part in [Part::Foot(side), Part::Toes(side)] {
-                let Some(axes) = self.turned.get_mut(&part) else { continue };
-                let mut pitches: Vec<f64> = frames
-                    .iter()
-                    .filter_map(|&frame| Some(axes.get(frame)?.x.dot(self.up).asin()))
-                    .collect();
-                if pitches.len() < FEWEST {
-                    continue;
-                }
-                pitches.sort_by(f64::total_cmp);
-                let pitch = pitches[pitches.len() / 2];
-                if pitch.abs() > MOST_PITCH {
-                    continue;
+                let Some(axes) = self.turned.get(&part) else { continue };
+                let pitches = frames.iter().filter_map(|&frame| Some(axes.get(frame)?.x));
+                // Without standing the posture of rest tells.
+                let mut pitch = match median(pitches.map(|x| x.dot(self.up).asin())) {
+                    Some(pitch) if pitch.abs() > MOST_PITCH => continue,
+                    pitch => pitch.unwrap_or(0.0),
+                };
+                if let (Part::Foot(_), Some(own)) = (part, to.slopes.get(&side)) {
+                    let lines = self.lines.get(&part);
+                    let slopes = frames.iter().filter_map(|&frame| lines?.get(frame));
+                    let slope = median(slopes.map(|line| line.dot(self.up).asin()));
+                    let slope = slope.or_else(|| from.slopes.get(&side).copied());
+                    if let Some(slope) = slope.filter(|slope| (slope - own).abs() < ALIKE) {
+                        pitch -= slope - own;
+                    }
                 }
                 // The third axis of a foot's frame points across it: x turns towards y about z.
                 let level = Mat3::rotation_z(-pitch);
-                axes.iter_mut().for_each(|axes| *axes = *axes * level);
+                if let Some(axes) = self.turned.get_mut(&part) {
+                    axes.iter_mut().for_each(|axes| *axes = *axes * level);
+                }
             }
         }
     }
 }
 
+/// The middle of some numbers.
+fn median(numbers: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut sorted: Vec<f64> = numbers.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied()
+}
+
+/// Slopes of feet from ankle to ball that differ by less than this, in radians, are those of feet that are built
+/// alike: their lines are matched. Of others the soles are.
+const ALIKE: f64 = 0.1;
 /// So many frames of standing say how a sole is.
 const FEWEST: usize = 10;
 /// A foot that stands steeper than this stands on its toes, in radians.

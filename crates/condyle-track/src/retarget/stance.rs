@@ -25,6 +25,8 @@ pub(super) struct Stance {
     pub leg: f64,
     /// The height of the ankles above the ground.
     pub ankle: f64,
+    /// For each side how much the line from ankle to ball rises, in radians.
+    pub slopes: BTreeMap<Side, f64>,
 }
 
 /// The axis that points up.
@@ -140,7 +142,14 @@ impl Stance {
             0 => between(Part::Chest, Part::Pelvis).filter(|d| *d > 1e-6).unwrap_or(1.0),
             count => legs.iter().sum::<f64>() / count as f64,
         };
-        let mut stance = Self { axes, heading, frames: BTreeMap::new(), ankle: 0.0, points, leg };
+        let slope = |side: &Side| {
+            let foot = Part::Foot(*side);
+            let along = body.end(foot)?.placed(pose) - *points.get(&foot)?;
+            (along.norm() > 1e-9).then(|| (*side, unit(along).dot(up).asin()))
+        };
+        let slopes = Side::BOTH.iter().filter_map(slope).collect();
+        let mut stance =
+            Self { axes, heading, frames: BTreeMap::new(), ankle: 0.0, slopes, points, leg };
         stance.ankle = stance.ankle_height(up);
         stance.frames = stance.anatomical(figure, pose);
         Ok(stance)

@@ -75,6 +75,9 @@ impl Onto {
     }
 }
 
+/// So many coordinates at limits are named.
+const MOST_NAMED: usize = 6;
+
 /// What is said once: tables, parts, how near, at limits, feet.
 fn told(figures: [(&Model, &Recognised); 2], report: &Report, options: Options) -> String {
     let mut text = String::new();
@@ -103,20 +106,26 @@ fn told(figures: [(&Model, &Recognised); 2], report: &Report, options: Options) 
             let _ = writeln!(text, "  only the {which} has: {}", names.join(", "));
         }
     }
-    let inside = report.limited > 0 && report.limited < report.frames;
-    let head = if inside { ", inside limits" } else { "" };
+    let inside = options.limits;
+    let head = if inside { ", mean inside limits and in what share of frames" } else { "" };
     let _ = writeln!(text, "  angle to what was asked for: mean, 95 %{head}");
     let line = |fit: &Fit| {
         let degrees = |angle: f64| format!("{:.2}°", angle.to_degrees());
         let kind = if fit.line { "" } else { " (turned)" };
-        let within = if inside { format!("  {:>7}", degrees(fit.inside)) } else { String::new() };
+        let within = match (inside, fit.inside.is_finite()) {
+            (true, true) => format!("  {:>7} {:>4.0} %", degrees(fit.inside), fit.share * 100.0),
+            (true, false) => "        -    0 %".to_owned(),
+            _ => String::new(),
+        };
         let name = format!("{}{kind}", fit.name);
         format!("    {name:<18} {:>7} {:>7}{within}\n", degrees(fit.mean), degrees(fit.most))
     };
     report.fits.iter().for_each(|fit| text.push_str(&line(fit)));
-    if options.limits {
-        let share = report.limited as f64 / report.frames.max(1) as f64 * 100.0;
-        let _ = writeln!(text, "  {} frames ({share:.0} %) are at a limit", report.limited);
+    if !report.limited.is_empty() {
+        let share = |frames: &usize| *frames as f64 / report.frames.max(1) as f64 * 100.0;
+        let names = report.limited.iter().map(|(name, at)| format!("{name} {:.0} %", share(at)));
+        let names: Vec<String> = names.take(MOST_NAMED).collect();
+        let _ = writeln!(text, "  frames at a limit, by coordinate: {}", names.join(", "));
     }
     let sliding = report.sliding;
     if sliding.stands > 0 {
