@@ -301,6 +301,7 @@ impl Convert {
         match target.id {
             Id::Document => Ok(document::write(&model).into_bytes()),
             Id::Poses => Ok(exchange::write(&model).into_bytes()),
+            _ if of_models(target) => Ok(warned(&self.output, encode::model(target, &model)?)),
             _ if !moves(target) => Err(self.unknown(target, "")),
             _ if self.model.is_some() => {
                 self.motion_as(Moving::Table(motion.to_table(&model, &self.name())), target)
