@@ -12,7 +12,9 @@ use crate::opensim::{self, setup};
 use crate::skeleton::Assumed;
 #[cfg(feature = "document")]
 use crate::text::utf8;
-use crate::{Animation, Error, Read, Recording, Table, bvh, c3d, csv, sto, trc};
+#[cfg(feature = "urdf")]
+use crate::urdf;
+use crate::{Animation, Error, Read, Recording, Table, asf, bvh, c3d, csv, skel, sto, trc};
 #[cfg(feature = "poses")]
 use crate::{
     exchange, keypoints,
@@ -146,6 +148,12 @@ pub enum Id {
     Document,
     /// OpenSim's models and setups.
     OpenSim,
+    /// Robot descriptions.
+    Urdf,
+    /// Models of MuJoCo.
+    Mjcf,
+    /// Scenes of Universal Scene Description.
+    Usda,
     /// Marker recordings.
     Trc,
     /// Marker recordings with analog channels and events.
@@ -164,8 +172,16 @@ pub enum Id {
     Glb,
     /// glTF in JSON, and the files of VRM, which are GLB.
     Gltf,
+    /// Scenes of Autodesk's programs.
+    Fbx,
     /// Skeletons with motion of Biovision.
     Bvh,
+    /// Skeletons of the course CSE 169.
+    Skel,
+    /// Skeletons of Acclaim.
+    Asf,
+    /// Takes of Acclaim's skeletons.
+    Amc,
 }
 
 /// The text of another file by its path as seen from the one that is read; else a sentence.
@@ -237,6 +253,39 @@ pub const FORMATS: &[Format] = &[
             }))
         },
     },
+    #[cfg(feature = "urdf")]
+    Format {
+        id: Id::Urdf,
+        name: "urdf",
+        title: "robot descriptions of ROS",
+        endings: &["urdf"],
+        reads: &[ContentKind::Model],
+        writes: &[ContentKind::Model],
+        sniff: |bytes| starts(bytes, 4096).contains("<robot"),
+        read: |bytes, _| urdf::from_bytes(bytes).map(|read| read.map(Content::Model)),
+    },
+    #[cfg(feature = "mjcf")]
+    Format {
+        id: Id::Mjcf,
+        name: "mjcf",
+        title: "models of MuJoCo",
+        endings: &["mjcf"],
+        reads: &[],
+        writes: &[ContentKind::Model],
+        sniff: |bytes| starts(bytes, 4096).contains("<mujoco"),
+        read: |_, _| Err(Error::new("mjcf/not-read", "models of MuJoCo are written, not read")),
+    },
+    #[cfg(feature = "usd")]
+    Format {
+        id: Id::Usda,
+        name: "usda",
+        title: "UsdSkel scenes",
+        endings: &["usda"],
+        reads: &[],
+        writes: &[ContentKind::Scene],
+        sniff: |bytes| bytes.starts_with(b"#usda"),
+        read: |_, _| Err(Error::new("usd/not-read", "scenes are written, not read")),
+    },
     Format {
         id: Id::Trc,
         name: "trc",
@@ -307,6 +356,19 @@ pub const FORMATS: &[Format] = &[
         },
         read: |bytes, _| csv::from_bytes(bytes).map(|read| read.map(Content::Table)),
     },
+    #[cfg(feature = "fbx")]
+    Format {
+        id: Id::Fbx,
+        name: "fbx",
+        title: "FBX: skeletons and animations",
+        endings: &["fbx"],
+        reads: &[ContentKind::Motion, ContentKind::Model],
+        writes: &[],
+        sniff: |bytes| {
+            bytes.starts_with(b"Kaydara FBX Binary") || starts(bytes, 64).starts_with("; FBX ")
+        },
+        read: |bytes, _| animation(crate::fbx::from_bytes(bytes)),
+    },
     #[cfg(feature = "glb")]
     Format {
         id: Id::Glb,
@@ -344,6 +406,39 @@ pub const FORMATS: &[Format] = &[
         },
     },
     Format {
+        id: Id::Skel,
+        name: "skel",
+        title: "skeletons of the course CSE 169",
+        endings: &["skel"],
+        reads: &[ContentKind::Model],
+        writes: &[],
+        sniff: |bytes| keyword(bytes).starts_with("balljoint"),
+        read: |bytes, _| Ok(skel::read(bytes, &Assumed::default())?.map(Content::Model)),
+    },
+    Format {
+        id: Id::Asf,
+        name: "asf",
+        title: "skeletons of Acclaim",
+        endings: &["asf"],
+        reads: &[ContentKind::Model],
+        writes: &[],
+        sniff: |bytes| keyword(bytes).starts_with(":version"),
+        read: |bytes, _| Ok(asf::read(bytes, &Assumed::default())?.map(Content::Model)),
+    },
+    Format {
+        id: Id::Amc,
+        name: "amc",
+        title: "takes of Acclaim's skeletons",
+        endings: &["amc"],
+        reads: &[ContentKind::Motion, ContentKind::Model],
+        writes: &[],
+        sniff: |bytes| keyword(bytes).starts_with(":fully-specified"),
+        read: |_, _| {
+            let message = "a take means nothing without its skeleton, an .asf file";
+            Err(Error::new("amc/skeleton", message).with_help("read it with its skeleton"))
+        },
+    },
+    Format {
         id: Id::Bvh,
         name: "bvh",
         title: "skeletons with motion of Biovision",
@@ -357,6 +452,13 @@ pub const FORMATS: &[Format] = &[
 
 fn animation(read: Result<Read<Animation>, Error>) -> Result<Read<Content>, Error> {
     read.map(|read| read.map(|animation| Content::Animation(Box::new(animation))))
+}
+
+/// The first line that is no comment, in lower case.
+fn keyword(bytes: &[u8]) -> String {
+    let text = starts(bytes, 4096).to_ascii_lowercase();
+    let line = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
+    line.unwrap_or("").to_owned()
 }
 
 /// The beginning of a file as text, without a byte order mark.
@@ -415,6 +517,13 @@ impl Format {
     ) -> Result<Read<Content>, Error> {
         match self.id {
             Id::Bvh => animation(bvh::from_bytes_with(bytes, assumed)),
+            Id::Skel => Ok(skel::read(bytes, assumed)?.map(Content::Model)),
+            #[cfg(feature = "fbx")]
+            Id::Fbx => {
+                let options = glb::Options { assumed: *assumed, ..glb::Options::default() };
+                animation(crate::fbx::read(bytes, &options))
+            }
+            Id::Asf => Ok(asf::read(bytes, assumed)?.map(Content::Model)),
             #[cfg(feature = "glb")]
             Id::Glb | Id::Gltf => {
                 let options = glb::Options { assumed: *assumed, ..glb::Options::default() };
@@ -493,6 +602,7 @@ mod tests {
                 "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\n1\n".into(),
             ),
             (Id::Document, "# x\ncondyle = 1\nkind = \"model\"\n[segment.a]\n".to_owned()),
+            (Id::Urdf, "<robot name=\"r\"><link name=\"a\"/></robot>".to_owned()),
             (
                 Id::OpenSim,
                 "<?xml version=\"1.0\"?>\n<OpenSimDocument><Model/></OpenSimDocument>".into(),

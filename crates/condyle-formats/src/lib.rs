@@ -5,7 +5,8 @@
 //! right. Inside, lengths are metres; a recording in millimetres is converted at the border. No
 //! input makes a reader panic, recurse, or allocate more than a small multiple of its size.
 //!
-//! Tables (TRC, STO, MOT, CSV) and C3D are always there; `document`, `glb`, `opensim` and `poses` are features.
+//! Tables (TRC, STO, MOT, CSV) and C3D are always there; `document`, `glb`, `opensim` and `poses` are features, and
+//! `fbx`, which is off by default: it needs a C compiler.
 //!
 //! | format | read | write |
 //! | --- | --- | --- |
@@ -19,11 +20,18 @@
 //! | CSV tables | [`csv::read`] | [`csv::write`] |
 //! | OpenSim models | [`opensim::model::read`] | [`opensim::write`] |
 //! | OpenSim inverse kinematics setups | [`opensim::setup`] | |
+//! | SKEL skeletons of CSE 169 | [`skel::read`] | |
+//! | ASF skeletons, and AMC takes of them | [`asf::read`], [`asf::with_skeleton`] | |
 //! | BVH skeletons with motion | [`bvh::from_bytes`] | [`bvh::write`] |
+//! | FBX skeletons with motion | `fbx::read` | |
 //! | GLB and glTF skeletons with motion; animated scenes | [`glb::read`] | [`glb::write`] |
 //! | GLB characters of a user, given back with a new animation | | [`glb::reanimate`] |
+//! | URDF robot descriptions | [`urdf::from_bytes`] | [`urdf::write`] |
+//! | MJCF models of MuJoCo | | [`mjcf::write`] |
+//! | UsdSkel scenes (USDA) | | [`usd::write`] |
 //! | XML, for readers of models | [`XmlDocument`] | |
 
+pub mod asf;
 pub mod bvh;
 pub mod c3d;
 pub mod csv;
@@ -32,25 +40,34 @@ pub mod csv;
 pub mod document;
 #[cfg(feature = "poses")]
 pub mod exchange;
+#[cfg(feature = "fbx")]
+pub mod fbx;
 mod format;
 #[cfg(feature = "glb")]
 pub mod glb;
 pub mod keypoints;
+#[cfg(feature = "mjcf")]
+pub mod mjcf;
 #[cfg(feature = "opensim")]
 pub mod opensim;
 #[cfg(feature = "plain")]
 pub mod plain;
 #[cfg(feature = "poses")]
 pub mod poses;
+pub mod skel;
 pub mod skeleton;
 pub mod sto;
 pub mod text;
 pub mod trc;
-#[cfg(feature = "opensim")]
+#[cfg(feature = "urdf")]
+pub mod urdf;
+#[cfg(feature = "usd")]
+pub mod usd;
+#[cfg(any(feature = "opensim", feature = "urdf"))]
 pub mod xml;
 
 pub use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Subject, nearest};
 pub use condyle_motion::{AngleUnit, Animation, Gap, LengthUnit, Observed, Recording, Table};
 pub use format::{Content, ContentKind, FORMATS, Format, Id, Include};
-#[cfg(feature = "opensim")]
+#[cfg(any(feature = "opensim", feature = "urdf"))]
 pub use xml::{Element, XmlDocument};

@@ -10,7 +10,7 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// The units of the file, y up.
-const PLAIN: Assumed = Assumed { metres_per_unit: Some(1.0), up: Some(UpAxis::Y) };
+const PLAIN: Assumed = Assumed { metres_per_unit: Some(1.0), up: Some(UpAxis::Y), rate: None };
 
 fn oracles() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../oracles/bvh")
@@ -278,7 +278,7 @@ fn joint_centres_of_any_model_are_kept() {
     let motion = Motion { times, frames };
     let text = bvh::write(&model, &motion, Mode::Open, USUAL_UNIT).unwrap();
     assert_eq!(text.warnings, []);
-    let assumed = Assumed { metres_per_unit: Some(USUAL_UNIT), up: Some(UpAxis::Y) };
+    let assumed = Assumed { metres_per_unit: Some(USUAL_UNIT), ..PLAIN };
     let again = bvh::from_bytes_with(text.value.as_bytes(), &assumed).unwrap().value;
     let ids = |model: &Model| ["thigh", "shank", "foot"].map(|n| model.find_segment(n).unwrap());
     let own = ids(&model).map(|id| (id, model.segment(id).joint_in_segment.translation));

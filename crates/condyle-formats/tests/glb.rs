@@ -303,3 +303,54 @@ fn a_surface_goes_with_the_nodes_that_carry_it() {
         assert!((found - expected).norm() < 1e-6, "{corner}: {found:?} {expected:?}");
     }
 }
+
+#[test]
+fn whoever_looks_elsewhere_is_turned_to_look_along_z() {
+    use condyle_model::model::Facing;
+    for up in [UpAxis::Y, UpAxis::Z] {
+        for facing in [Facing::PlusX, Facing::MinusX, Facing::PlusZ, Facing::MinusZ] {
+            // Nobody looks along the vertical.
+            if up == UpAxis::Z && facing.direction().z != 0.0 {
+                continue;
+            }
+            let scene = Scene { up, facing, nodes: vec![SceneNode::default()], ..Scene::default() };
+            let read = gltf::Gltf::from_slice(&write(&scene).unwrap()).unwrap();
+            let top = read.scenes().next().unwrap().nodes().next().unwrap();
+            let m = top.transform().matrix();
+            let turned = |v: Vec3| -> Vec<f32> {
+                let v = v.to_array().map(|x| x as f32);
+                (0..3).map(|row| (0..3).map(|c| m[c][row] * v[c]).sum()).collect()
+            };
+            let near =
+                |a: Vec<f32>, b: [f32; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
+            let vertical = if up == UpAxis::Y { Vec3::Y } else { Vec3::Z };
+            assert!(near(turned(vertical), [0.0, 1.0, 0.0]), "{up:?} {facing:?}");
+            assert!(near(turned(facing.direction()), [0.0, 0.0, 1.0]), "{up:?} {facing:?}");
+        }
+    }
+}
+
+#[test]
+fn what_is_driven_is_a_node_whose_place_is_the_value() {
+    use condyle_formats::glb::Driven;
+    let smile = Driven { name: "smile".into(), rest: 0.0, values: vec![0.0, 0.5, 1.0] };
+    let scene = Scene {
+        nodes: vec![SceneNode { name: "head".into(), ..SceneNode::default() }],
+        times: vec![0.0, 0.1, 0.2],
+        driven: vec![smile],
+        ..Scene::default()
+    };
+    let file = write(&scene).unwrap();
+    let read = gltf::Gltf::from_slice(&file).unwrap();
+    let node = read.nodes().find(|node| node.name() == Some("smile")).unwrap();
+    assert_eq!(node.extras().as_ref().unwrap().get(), r#"{"drives":"smile"}"#);
+    let channel = read.animations().next().unwrap().channels().next().unwrap();
+    assert_eq!(channel.target().node().index(), node.index());
+    let reader = channel.reader(|_| read.blob.as_deref());
+    let Some(ReadOutputs::Translations(places)) = reader.read_outputs() else {
+        panic!("it moves along x");
+    };
+    assert_eq!(places.collect::<Vec<_>>(), [[0.0; 3], [0.5, 0.0, 0.0], [1.0, 0.0, 0.0]]);
+    let wrong = Scene { driven: vec![Driven::default()], ..scene };
+    assert_eq!(write(&wrong).unwrap_err().code(), "glb/track");
+}

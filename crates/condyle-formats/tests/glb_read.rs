@@ -166,7 +166,7 @@ fn scales_that_never_change_go_into_lengths() {
     );
     let found = read(text.as_bytes(), None).unwrap();
     let said: Vec<&str> = found.warnings.iter().map(|w| w.code).collect();
-    assert_eq!(said, ["glb/scale"]);
+    assert_eq!(said, ["skeleton/scale"]);
     let model = found.value.model;
     let place =
         |name| model.segment(model.find_segment(name).unwrap()).joint_in_parent.translation.y;

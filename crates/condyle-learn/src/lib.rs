@@ -3,5 +3,7 @@
 //! | module | what |
 //! | --- | --- |
 //! | [`frames`] | orientations of segments from markers, by a recipe |
+//! | [`limits`] | limits of joints from orientations |
 
 pub mod frames;
+pub mod limits;

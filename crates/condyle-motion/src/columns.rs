@@ -55,7 +55,51 @@ pub fn found_columns(model: &Model, id: CoordinateId, table: &Table) -> Vec<Opti
     };
     let names = columns(model, id);
     let parts = parts(model, id).iter();
-    parts.zip(names).map(|(part, name)| table.column(&name).or_else(|| by_path(part))).collect()
+    let found: Vec<Option<usize>> = parts
+        .zip(names)
+        .map(|(part, name)| table.column(&name).or_else(|| by_path(part)))
+        .collect();
+    if coordinate.kind == CoordinateKind::Orientation && found.contains(&None) {
+        let stems = [model.coordinate_key(id), set.clone(), coordinate.name.clone()].into_iter();
+        let moved = model.outputs_of(coordinate.joint_set);
+        let moved = moved.map(|(segment, _)| model.segment(segment).name.clone());
+        // Only where one segment turns is its name that of the turn.
+        let moved: Vec<String> = moved.collect();
+        let alone = (moved.len() == 1).then(|| moved[0].clone());
+        if let Some(other) = stems.chain(alone).find_map(|stem| quaternion(table, &stem)) {
+            return other.map(Some).to_vec();
+        }
+    }
+    found
+}
+
+/// How other programs call the four numbers x, y, z, w of a quaternion, behind the name of what turns.
+const QUATERNIONS: [[&str; 4]; 6] = [
+    ["_x", "_y", "_z", "_w"],
+    [".x", ".y", ".z", ".w"],
+    ["_qx", "_qy", "_qz", "_qw"],
+    [".qx", ".qy", ".qz", ".qw"],
+    ["/qx", "/qy", "/qz", "/qw"],
+    ["/x", "/y", "/z", "/w"],
+];
+
+/// The columns of a quaternion that is called so, as x, y, z, w; in any case. In a table of the type
+/// `Quaternion` of OpenSim `NAME_1` to `NAME_4` are w, x, y, z.
+fn quaternion(table: &Table, stem: &str) -> Option<[usize; 4]> {
+    let typed =
+        table.header_value("DataType").is_some_and(|t| t.eq_ignore_ascii_case("quaternion"));
+    let numbered = typed.then_some(["_2", "_3", "_4", "_1"]);
+    QUATERNIONS.into_iter().chain(numbered).find_map(|parts| {
+        let column = |part: &str| {
+            let holds = |name: &String| {
+                name.len() == stem.len() + part.len()
+                    && name.get(..stem.len()).is_some_and(|n| n.eq_ignore_ascii_case(stem))
+                    && name.get(stem.len()..).is_some_and(|n| n.eq_ignore_ascii_case(part))
+            };
+            table.columns.iter().position(holds)
+        };
+        Some([column(parts[0])?, column(parts[1])?, column(parts[2])?, column(parts[3])?])
+    })
 }
 
 /// Refuses a table of which two columns have the name of one coordinate: readers call the second `name#2`.
@@ -127,6 +171,30 @@ mod tests {
     use super::*;
     use condyle_math::Vec3;
     use condyle_model::ModelBuilder;
+
+    #[test]
+    fn quaternions_are_found_as_other_programs_call_them() {
+        let mut b = ModelBuilder::new("hips");
+        let thigh = b.segment("Thigh_R", None);
+        b.ball_joint("hip_r", thigh);
+        let model = b.build().unwrap();
+        let id = model.coordinate_ids().next().unwrap();
+        let found = |columns: [&str; 4], header: &[(&str, &str)]| {
+            let header = header.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
+            let columns = columns.map(str::to_owned).to_vec();
+            found_columns(&model, id, &Table { columns, header, ..Table::default() })
+        };
+        let all = |order: [usize; 4]| order.map(Some).to_vec();
+        assert_eq!(found(["hip_r_w", "hip_r_x", "hip_r_y", "hip_r_z"], &[]), all([1, 2, 3, 0]));
+        assert_eq!(
+            found(["thigh_r.x", "thigh_r.y", "thigh_r.z", "thigh_r.w"], &[]),
+            all([0, 1, 2, 3])
+        );
+        let numbered = ["Thigh_R_1", "Thigh_R_2", "Thigh_R_3", "Thigh_R_4"];
+        assert_eq!(found(numbered, &[("DataType", "Quaternion")]), all([1, 2, 3, 0]));
+        assert_eq!(found(numbered, &[]), vec![None; 4]);
+        assert_eq!(found(["hip_r_w", "hip_r_x", "hip_r_y", "other"], &[]), vec![None; 4]);
+    }
 
     #[test]
     fn parts_of_a_path_are_compared_whole() {

@@ -202,7 +202,7 @@ impl Tracker {
     }
 
     /// Brings every angle within half a turn of its default; whether any was not.
-    fn unwind(&self, stored: &mut [f64]) -> bool {
+    pub(crate) fn unwind(&self, stored: &mut [f64]) -> bool {
         let before = stored.to_vec();
         for (place, turn) in self.turns(&before, &self.defaults) {
             stored[place] -= (turn / TAU).round() * TAU;
@@ -263,7 +263,7 @@ impl Tracker {
     }
 
     /// A descent from the posture in `answer`, keeping the solver's active set of the last one.
-    fn descend(
+    pub(crate) fn descend(
         &self,
         scratch: &mut Scratch,
         seen: &[Option<[f64; 3]>],

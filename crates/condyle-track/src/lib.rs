@@ -28,6 +28,7 @@
 //! | [`sequence`] | many frames: cut, solve a chunk, stitch |
 //! | [`goal`] | poses by goals: what should be where, nearest to rest |
 //! | [`robust`] | faulty markers: left out, exchanged labels put right |
+//! | [`retarget`] | a motion of one figure for another: directions of limbs, feet that stand |
 //!
 //! ```
 //! use condyle_math::Vec3;
@@ -57,6 +58,7 @@ pub mod goal;
 mod guess;
 mod problem;
 mod recorded;
+pub mod retarget;
 pub mod robust;
 pub mod sequence;
 mod stream;
@@ -70,7 +72,8 @@ pub use recorded::Recorded;
 pub use sequence::{Chunk, cut, stitch};
 pub use stream::Stream;
 pub use target::{
-    CoordinateTarget, MarkerTarget, OrientationTarget, PRIOR, PostureTarget, Targets, Wanted,
+    CoordinateTarget, DirectionTarget, MarkerTarget, OrientationTarget, PRIOR, PlaceTarget,
+    PostureTarget, Targets, Wanted,
 };
 pub use tracker::{Rules, Scratch, Tracker};
 pub use trust::Trust;

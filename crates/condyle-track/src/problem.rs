@@ -39,6 +39,9 @@ pub(crate) struct Buffers {
     /// For each group of markers, and for each set of groups.
     pub moments: Vec<Moments>,
     pub summed: Vec<Moments>,
+    /// For each unknown how a line turns with it, and which unknowns do that; empty between targets.
+    pub velocities: Vec<Option<Vec3>>,
+    pub touched: Vec<u32>,
 }
 
 impl Buffers {

@@ -201,6 +201,8 @@ impl Scratch {
                 total_weight: 0.0,
                 moments: vec![Moments::ZERO; tracker.markers.groups.len()],
                 summed: vec![Moments::ZERO; tracker.markers.pairs.sets.len()],
+                velocities: vec![None; tracker.unknown_len()],
+                touched: Vec::with_capacity(tracker.unknown_len()),
             },
         }
     }

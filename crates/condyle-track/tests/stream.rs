@@ -6,8 +6,8 @@ use condyle_math::function::Function;
 use condyle_model::model::{Closure, Condition};
 use condyle_model::{Mode, Model, ModelBuilder, Pose, Program, Range};
 use condyle_track::{
-    CoordinateTarget, FrameAnswer, MarkerTarget, PostureTarget, Rules, Scratch, Stream, Targets,
-    Tracker, Wanted, cut, sequence,
+    CoordinateTarget, DirectionTarget, FrameAnswer, MarkerTarget, PlaceTarget, PostureTarget,
+    Rules, Scratch, Stream, Targets, Tracker, Wanted, cut, sequence,
 };
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
@@ -82,6 +82,7 @@ fn a_stream_equals_its_frames_one_by_one_and_allocates_nothing() {
     let model = limb();
     let seen = recorded(&model, 60);
     let angle = |i| model.coordinate_ids().nth(i).unwrap();
+    let segment = |i| model.segment_ids().nth(i).unwrap();
     for closure_weight in [None, Some(0.1)] {
         let targets = Targets {
             marker_factors: vec![],
@@ -92,6 +93,18 @@ fn a_stream_equals_its_frames_one_by_one_and_allocates_nothing() {
                 wanted: Wanted::PerFrame((0..60).map(|i| 0.01 * f64::from(i)).collect()),
             }],
             orientations: vec![],
+            directions: vec![DirectionTarget {
+                from: (segment(0), Vec3::ZERO),
+                to: (segment(3), Vec3::X),
+                weight: 1e-6,
+                wanted: vec![Some(Vec3::Y); 60],
+            }],
+            places: vec![PlaceTarget {
+                segment: segment(2),
+                point: Vec3::Z,
+                weight: 1e-7,
+                wanted: vec![Some(Vec3::X); 60],
+            }],
             postures: vec![PostureTarget {
                 terms: vec![(angle(3), 1.0), (angle(5), -1.0)],
                 rest: 0.2,

@@ -2,6 +2,7 @@
 
 mod parts;
 mod source;
+mod take;
 
 use crate::shipped;
 #[cfg(any(feature = "document", feature = "opensim"))]
@@ -32,6 +33,7 @@ pub use parts::{MotionParts, motion_parts};
 pub use source::{
     animation_is, assumed, files_read, is_standard_input, nameless_is, skeletons_are,
 };
+pub use take::skeleton_is;
 
 /// A file that could not be used.
 #[derive(Debug)]
@@ -193,8 +195,15 @@ pub fn content_as(
     let format = found.ok_or_else(no_format)?;
     let mut include = |name: &str| included(path, name);
     let read = match format.id {
+        Id::Amc => return take::take(path, &bytes, assumed).map(|read| named_after(path, read)),
         #[cfg(feature = "glb")]
         Id::Glb | Id::Gltf => scene_of(path, &bytes, assumed),
+        #[cfg(feature = "fbx")]
+        Id::Fbx => {
+            let options = glb::Options { animation: source::wanted_animation(), assumed: *assumed };
+            let read = condyle_formats::fbx::read(&bytes, &options);
+            read.map(|read| read.map(|found| Content::Animation(Box::new(found))))
+        }
         _ => format.read_with(&bytes, &mut include, assumed),
     };
     let read = read.map_err(|error| {
@@ -212,12 +221,10 @@ pub fn content_as(
         Content::Trial(trial) => read.warnings.extend(trial.recording.settle_zeros(zeros)),
         _ => {}
     }
-    if let Content::Animation(animation) = &mut read.value
-        && animation.model.name().is_empty()
-    {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        animation.model.set_name(&name);
+    if format.id == Id::Asf {
+        skeleton_is(path);
     }
+    let read = named_after(path, read);
     match wanted {
         Some(kind) if !read.value.holds(kind) => {
             let message =
@@ -229,18 +236,75 @@ pub fn content_as(
     }
 }
 
+/// A skeleton without a name of its own is called after its file.
+fn named_after(path: &Path, mut read: Read<Content>) -> Read<Content> {
+    let model = match &mut read.value {
+        Content::Animation(animation) => &mut animation.model,
+        Content::Model(model) => model,
+        _ => return read,
+    };
+    if model.name().is_empty() {
+        model.set_name(&path.file_stem().unwrap_or_default().to_string_lossy());
+    }
+    read
+}
+
 /// The skeleton of a glTF file, whose buffers may be files beside it.
 #[cfg(feature = "glb")]
 fn scene_of(path: &Path, bytes: &[u8], assumed: &Assumed) -> Result<Read<Content>, Error> {
     let options = glb::Options { animation: source::wanted_animation(), assumed: *assumed };
-    let mut other = |name: &str| {
-        source::bytes(&beside(path, name)).map_err(|error| match error.cause {
-            Cause::Io(error) => error.to_string(),
-            _ => error.to_string(),
-        })
-    };
-    let read = glb::read(bytes, &options, &mut other)?;
+    let read = glb::read(bytes, &options, &mut |name| buffer(path, name))?;
     Ok(read.map(|found| Content::Animation(Box::new(found))))
+}
+
+/// The bytes of a file that a glTF file names.
+#[cfg(feature = "glb")]
+fn buffer(path: &Path, name: &str) -> Result<Vec<u8>, String> {
+    source::bytes(&beside(path, name)).map_err(|error| match error.cause {
+        Cause::Io(error) => error.to_string(),
+        _ => error.to_string(),
+    })
+}
+
+/// Opens a figure that is to get a motion, as [`animation`] does; of what [`animation_is`] said nothing counts, since that is about
+/// the motion.
+///
+/// # Errors
+/// As [`content`].
+pub fn figure(path: &Path) -> Result<Read<Animation>, OpenError> {
+    #[cfg(feature = "glb")]
+    if is_gltf(path) {
+        let bytes = bytes(path)?;
+        let options = glb::Options { animation: None, assumed: source::assumed() };
+        let read = glb::read(&bytes, &options, &mut |name| buffer(path, name));
+        let mut read = read.map_err(|error| failed(path, Cause::Content { error, text: None }))?;
+        read.warnings.retain(|said| said.code != "glb/animations");
+        return Ok(read);
+    }
+    animation(path)
+}
+
+/// Whether a path names a file of glTF.
+#[cfg(feature = "glb")]
+pub fn is_gltf(path: &Path) -> bool {
+    Format::of_ending(&ending(path)).is_some_and(|f| matches!(f.id, Id::Glb | Id::Gltf))
+}
+
+/// The bytes of a character of glTF with another animation: a motion of the model that [`figure`] opens from it. All else stays as
+/// it is ([`glb::reanimate`]).
+///
+/// # Errors
+/// As [`content`]; what [`glb::node_motion`] and [`glb::reanimate`] find wrong.
+#[cfg(feature = "glb")]
+pub fn reanimated(path: &Path, motion: &Motion, name: &str) -> Result<Read<Vec<u8>>, OpenError> {
+    let bytes = bytes(path)?;
+    let options = glb::Options { animation: None, assumed: source::assumed() };
+    let tracks = glb::node_motion(&bytes, &options, &mut |name| buffer(path, name), motion);
+    let file = tracks.and_then(|tracks| {
+        let named = glb::NodeMotion { name: name.to_owned(), ..tracks };
+        glb::reanimate(&bytes, &named, glb::Old::Replaced)
+    });
+    file.map_err(|error| failed(path, Cause::Content { error, text: None }))
 }
 
 /// A setup with the tasks that have a file of their own.

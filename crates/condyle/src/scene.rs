@@ -2,8 +2,10 @@
 
 use crate::Figure;
 use condyle_diagnostics::{Diagnostic, Read};
-use condyle_formats::glb::{LocalPose, MarkerTrack, Scene, SceneNode, Surface, Track, UpAxis};
-use condyle_math::Affine;
+use condyle_formats::glb::{
+    self, Driven, LocalPose, MarkerTrack, Scene, SceneNode, Surface, Track, UpAxis,
+};
+use condyle_math::{Affine, Mat3};
 use condyle_model::{Mode, Model, Pose, Program, SegmentId};
 use condyle_motion::Motion;
 use condyle_motion::Recording;
@@ -23,8 +25,8 @@ pub fn scene(model: &Model, motion: &Motion, markers: Option<(&Recording, &[usiz
 ///
 /// # Warnings
 /// `scene/shear` where segments are sheared, or stretched along a direction that is none of their
-/// own axes: a node cannot hold that, and gets the nearest place that it can
-/// ([`LocalPose::nearest`]).
+/// own axes: one node cannot hold that, so that each of these hangs on a second node, named after it, which has the stretch
+/// ([`glb::in_two`]). Places are exact at every key.
 pub fn baked(
     model: &Model,
     motion: &Motion,
@@ -47,7 +49,7 @@ pub fn baked(
     // A scene in motion rests where its first frame is.
     let rest_counts = motion.frames.is_empty();
     let figure = Figure::new(model);
-    let nodes = order
+    let nodes: Vec<SceneNode> = order
         .iter()
         .map(|&id| {
             let (rest, shear) = local(model, &pose, id);
@@ -71,6 +73,11 @@ pub fn baked(
             }
         }
     }
+    let mut figure_nodes: Vec<SceneNode> = nodes;
+    if !lost.segments.is_empty() {
+        let frames = if rest_counts { &[] } else { &motion.frames[..] };
+        stretch(model, mode, frames, &order, &lost, (&mut figure_nodes, &mut tracks, &mut node_of));
+    }
     let markers = markers.map_or_else(Vec::new, |(recording, labels)| {
         marker_tracks(recording, labels, &motion.times)
     });
@@ -80,7 +87,8 @@ pub fn baked(
             condyle_model::UpAxis::Y => UpAxis::Y,
             condyle_model::UpAxis::Z => UpAxis::Z,
         },
-        nodes,
+        facing: model.facing(),
+        nodes: figure_nodes,
         surfaces: figure
             .parts
             .into_iter()
@@ -93,10 +101,86 @@ pub fn baked(
             .collect(),
         times: motion.times.clone(),
         tracks: if motion.frames.is_empty() { vec![] } else { tracks },
+        driven: driven(model, motion, mode),
         markers,
         ..Scene::default()
     };
     Read { value: scene, warnings: lost.warning(model).into_iter().collect() }
+}
+
+/// The values of coordinates that drive something outside of the model.
+fn driven(model: &Model, motion: &Motion, mode: Mode) -> Vec<Driven> {
+    let mut found = vec![];
+    let mut start = 0;
+    for id in model.coordinate_ids() {
+        let coordinate = model.coordinate(id);
+        if let Some(name) = &coordinate.drives {
+            let held = |value: f64| match mode {
+                Mode::Open => value,
+                _ => value
+                    .max(coordinate.range.lower.unwrap_or(f64::NEG_INFINITY))
+                    .min(coordinate.range.upper.unwrap_or(f64::INFINITY)),
+            };
+            let value = |frame: &Vec<f64>| held(frame.get(start).copied().unwrap_or_default());
+            found.push(Driven {
+                name: name.clone(),
+                rest: held(coordinate.default[0]),
+                values: motion.frames.iter().map(value).collect(),
+            });
+        }
+        start += coordinate.kind.stored();
+    }
+    found
+}
+
+/// Gives each sheared segment a second node above its own, which holds the stretch.
+fn stretch(
+    model: &Model,
+    mode: Mode,
+    frames: &[Vec<f64>],
+    order: &[SegmentId],
+    lost: &Lost,
+    (nodes, tracks, node_of): (&mut Vec<SceneNode>, &mut Vec<Track>, &mut [usize]),
+) {
+    let program = Program::compile(model);
+    let mut pose = Pose::new(&program);
+    let mut axes = vec![Mat3::IDENTITY; order.len()];
+    let mut pairs: Vec<(Vec<LocalPose>, Vec<LocalPose>)> = vec![(vec![], vec![]); order.len()];
+    let defaults = [model.defaults()];
+    let shown = if frames.is_empty() { &defaults[..] } else { frames };
+    for stored in shown {
+        if program.evaluate(stored, mode, &mut pose).is_err() {
+            continue;
+        }
+        for ((id, axes), pair) in order.iter().zip(&mut axes).zip(&mut pairs) {
+            if lost.segments.contains(id) {
+                let (outer, inner) = glb::in_two(affine(model, &pose, *id), axes);
+                pair.0.push(outer);
+                pair.1.push(inner);
+            }
+        }
+    }
+    // Every segment keeps its order; the second nodes come just before their own.
+    let (mut all, mut moved): (Vec<SceneNode>, Vec<Track>) = (vec![], vec![]);
+    let mut new = vec![0usize; nodes.len()];
+    let old = std::mem::take(nodes).into_iter().zip(std::mem::take(tracks));
+    for (index, ((mut node, mut track), (outer, inner))) in old.zip(pairs).enumerate() {
+        node.parent = node.parent.map(|parent| new[parent]);
+        if let (Some(first), Some(second)) = (outer.first(), inner.first()) {
+            let name = format!("{} stretch", node.name);
+            all.push(SceneNode { name, rest: *first, ..node.clone() });
+            node.parent = Some(all.len() - 1);
+            node.rest = *second;
+            moved.push(Track { node: all.len() - 1, poses: outer });
+            track.poses = inner;
+        }
+        new[index] = all.len();
+        track.node = all.len();
+        all.push(node);
+        moved.push(track);
+    }
+    node_of.iter_mut().for_each(|node| *node = new[*node]);
+    (*nodes, *tracks) = (all, moved);
 }
 
 /// The shear that nodes cannot hold.
@@ -130,14 +214,12 @@ impl Lost {
         }
         let frame = frame.map_or(String::new(), |frame| format!(" in frame {frame}"));
         let message = format!(
-            "sheared segments are written without their shear: {}; at worst, `{}`{frame}, points are \
-             off by up to {:.2} % of their distance from its origin",
+            "sheared segments hang on a second node each: {}; most is sheared `{}`{frame}, by {:.2} %",
             named.join(", "),
             model.segment(id).name,
             100.0 * self.worst,
         );
-        let help = "a node has sizes along its own axes only: give the joint frame of the segment \
-                    the axes of its scale, on both sides";
+        let help = "one node has sizes along its own axes only";
         Some(Diagnostic::warning("scene/shear", message).with_help(help))
     }
 }
@@ -156,14 +238,18 @@ fn marker_tracks(recording: &Recording, labels: &[usize], times: &[f64]) -> Vec<
         .collect()
 }
 
-/// Where a segment is in its parent, and the shear that a node leaves out. The parent may be
-/// stretched, so its inverse is the general one.
+/// Where a segment is in its parent, and the shear that one node leaves out.
 fn local(model: &Model, pose: &Pose, id: SegmentId) -> (LocalPose, f64) {
+    LocalPose::nearest(affine(model, pose, id))
+}
+
+/// Where a segment is in its parent. The parent may be stretched, so its inverse is the general one.
+fn affine(model: &Model, pose: &Pose, id: SegmentId) -> Affine {
     let parent = pose.frame(model.segment(id).parent);
     let child = pose.segment(id);
     let back = parent.linear.inverse();
     let step = child.translation - parent.translation;
-    LocalPose::nearest(Affine::new(back * child.linear, back * step))
+    Affine::new(back * child.linear, back * step)
 }
 
 #[cfg(test)]
@@ -255,7 +341,7 @@ mod tests {
     }
 
     #[test]
-    fn a_shear_is_said_with_its_size() {
+    fn a_shear_is_carried_by_a_second_node_and_said() {
         let model = figure();
         let lean: f64 = 0.3;
         let upright = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
@@ -265,11 +351,43 @@ mod tests {
         let left = 100.0 * 2f64.sqrt() * (lean / 2.0).atan().sin();
         let said: Vec<String> = baked.warnings.iter().map(|w| w.message.clone()).collect();
         let expected = format!(
-            "sheared segments are written without their shear: `hat`; at worst, `hat` in frame 1, \
-             points are off by up to {left:.2} % of their distance from its origin"
+            "sheared segments hang on a second node each: `hat`; most is sheared `hat` in frame 1, by \
+             {left:.2} %"
         );
         assert_eq!(said, [expected]);
         assert_eq!(baked.warnings[0].code, "scene/shear");
+        let names: Vec<&str> = baked.value.nodes.iter().map(|node| node.name.as_str()).collect();
+        assert_eq!(names, ["neck", "head", "hat stretch", "hat"]);
+        let program = Program::compile(&model);
+        let mut pose = Pose::new(&program);
+        for (frame, stored) in motion.frames.iter().enumerate() {
+            program.evaluate(stored, Mode::Open, &mut pose).expect("buffers of this program");
+            let mut world: Vec<Affine> = vec![];
+            for (node, track) in baked.value.nodes.iter().zip(&baked.value.tracks) {
+                let parent = node.parent.map_or(Affine::IDENTITY, |p| world[p]);
+                world.push(parent * seen(&track.poses[frame]));
+            }
+            let hat = pose.segment(model.find_segment("hat").expect("it is in the text")).to_rows();
+            for (found, expected) in world[3].to_rows().iter().zip(hat) {
+                assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_moves_nothing_is_driven() {
+        let text = FIGURE.replace(
+            "coordinate.nod = {}",
+            "coordinate.nod = {}\ncoordinate.smile = { kind = \"other\", default = 0.25, drives = \"smile\" }",
+        );
+        let read = document::read(&text, &mut |_| Err("it stands alone".into()));
+        let model = read.expect("a model").value.model;
+        let mut frame = model.defaults();
+        frame[2] = 0.75;
+        let motion = Motion { times: vec![0.0], frames: vec![frame] };
+        let baked = baked(&model, &motion, Mode::Open, None).value;
+        let smile = Driven { name: "smile".into(), rest: 0.25, values: vec![0.75] };
+        assert_eq!(baked.driven, [smile]);
     }
 
     #[test]

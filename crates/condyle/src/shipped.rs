@@ -65,6 +65,31 @@ const NAME_TABLES: &[(&str, &str)] = &[
     ("plug-in-gait", include_str!("../names/plug-in-gait.toml")),
 ];
 
+/// Name and text of every shipped table of the names of bones, by name.
+#[cfg(feature = "document")]
+const SKELETONS: &[(&str, &str)] = &[
+    ("biovision", include_str!("../names/skeletons/biovision.toml")),
+    ("biped", include_str!("../names/skeletons/biped.toml")),
+    ("cmu-asf", include_str!("../names/skeletons/cmu-asf.toml")),
+    ("cmu-bvh", include_str!("../names/skeletons/cmu-bvh.toml")),
+    ("h-anim", include_str!("../names/skeletons/h-anim.toml")),
+    ("human", include_str!("../names/skeletons/human.toml")),
+    ("mixamo", include_str!("../names/skeletons/mixamo.toml")),
+    ("opensim", include_str!("../names/skeletons/opensim.toml")),
+    ("poser", include_str!("../names/skeletons/poser.toml")),
+    ("rigify", include_str!("../names/skeletons/rigify.toml")),
+    ("smpl", include_str!("../names/skeletons/smpl.toml")),
+    ("unreal", include_str!("../names/skeletons/unreal.toml")),
+    ("vrm", include_str!("../names/skeletons/vrm.toml")),
+    ("vrm0", include_str!("../names/skeletons/vrm0.toml")),
+];
+
+/// All shipped tables of the names of bones, each with its name, in alphabetical order.
+#[cfg(feature = "document")]
+pub fn skeletons() -> impl Iterator<Item = (&'static str, &'static str)> {
+    SKELETONS.iter().copied()
+}
+
 /// The names of all shipped tables of marker names, in alphabetical order.
 #[cfg(feature = "document")]
 pub fn name_tables() -> impl Iterator<Item = &'static str> {

@@ -2,6 +2,7 @@
 
 mod dropped;
 mod includes;
+mod onto;
 
 use super::{Angles, Limits, Outcome};
 use crate::failure::{Failure, warn_about, warned};
@@ -25,7 +26,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 pub(crate) struct Convert {
     /// A motion (.mot, .sto, .csv), poses (.json, as `fk` takes them), a model (.osim, .toml, a
-    /// resolved one in .json, or the name of a shipped one), a skeleton with its motion (.bvh, .glb, .gltf) or a
+    /// resolved one in .json, or the name of a shipped one), a skeleton with its motion (.bvh, .amc, .glb, .gltf, .fbx) or a
     /// marker recording (.trc, .c3d).
     input: PathBuf,
     /// Where to write; `-` is standard output and needs --to.
@@ -57,6 +58,8 @@ pub(crate) struct Convert {
     /// The format of the output; by default that of its ending.
     #[arg(long, value_parser = format::names(&WRITTEN))]
     to: Option<String>,
+    #[command(flatten)]
+    onto: onto::Onto,
 }
 
 /// How coordinates of one number go from key pose to key pose.
@@ -75,7 +78,7 @@ fn moves(format: &Format) -> bool {
 
 /// Whether a format of other programs holds models as trees of plain joints.
 fn of_models(format: &Format) -> bool {
-    matches!(format.id, Id::OpenSim)
+    matches!(format.id, Id::OpenSim | Id::Urdf | Id::Mjcf)
 }
 
 /// What can be written.
@@ -84,17 +87,24 @@ const WRITTEN: [ContentKind; 4] =
 
 /// The supported conversions, for the message about any other.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
-                     to .glb or .bvh (an animation), .trc or .c3d (the model's markers), and poses (.json) to all \
-                     of these, with --rate as key poses; a skeleton with its motion (.bvh, .glb, .gltf) to all of these \
-                     without --model, and as a model; a model (.osim, .toml, .json, or a shipped one by name) to .toml, .json (resolved), .glb, .bvh or .osim; \
+                     to .glb, .bvh or .usda (an animation), .trc or .c3d (the model's markers), and poses (.json) to all \
+                     of these, with --rate as key poses; a skeleton with its motion (.bvh, .amc, .glb, .gltf, .fbx) to all of these \
+                     without --model, and as a model; all of these motions for another figure with --onto; a model (.osim, .urdf, .toml, .json, .asf, or a shipped one by name) to .toml, .json (resolved), .glb, .bvh, .osim, .urdf, .mjcf or .usda; \
                      a recording (.trc, .c3d) to .trc, .c3d or .csv, with --analog its channels to .csv, .mot or .sto";
 
 impl Convert {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
         let target = self.target()?;
-        let inputs: Vec<&Path> =
-            [&self.input].into_iter().chain(&self.model).map(PathBuf::as_path).collect();
+        let inputs: Vec<&Path> = [&self.input]
+            .into_iter()
+            .chain(&self.model)
+            .chain(self.onto.inputs())
+            .map(PathBuf::as_path)
+            .collect();
         output::check_distinct(&inputs, &[&self.output])?;
+        if let Some(model) = &self.model {
+            open::skeleton_is(model);
+        }
         let read = match open::content(&self.input, None) {
             Err(error) if matches!(error.cause, Cause::Format { .. }) => {
                 return Err(self.unknown(target, ""));
@@ -136,7 +146,7 @@ impl Convert {
                 warned(&self.output, encode::model(target, &model)?)
             }
             Content::Model(model) | Content::Document(Document { model, .. })
-                if target.id == Id::Bvh =>
+                if matches!(target.id, Id::Bvh | Id::Usda) =>
             {
                 self.skeleton(target, &model, &Motion::default())?
             }
@@ -244,7 +254,7 @@ impl Convert {
         motion: &Motion,
     ) -> Result<Vec<u8>, Failure> {
         let unit = open::assumed().metres_per_unit;
-        if unit.is_none() {
+        if unit.is_none() && target.id == Id::Bvh {
             say(&format!("note: {}: lengths are in cm (--length-unit)", self.output.display()));
         }
         let unit = unit.unwrap_or(bvh::USUAL_UNIT);
@@ -291,6 +301,7 @@ impl Convert {
         match target.id {
             Id::Document => Ok(document::write(&model).into_bytes()),
             Id::Poses => Ok(exchange::write(&model).into_bytes()),
+            _ if of_models(target) => Ok(warned(&self.output, encode::model(target, &model)?)),
             _ if !moves(target) => Err(self.unknown(target, "")),
             _ if self.model.is_some() => {
                 self.motion_as(Moving::Table(motion.to_table(&model, &self.name())), target)
@@ -299,13 +310,23 @@ impl Convert {
         }
     }
 
-    /// A motion of a model in another format, legal if asked for.
+    /// A motion of a model, or what it is for another figure, in another format, legal if asked for.
     fn moved(
         &self,
         model: &Model,
         mut motion: Motion,
         target: &Format,
     ) -> Result<Vec<u8>, Failure> {
+        if let Some((onto, carried)) =
+            self.onto.carried(&self.input, model, &motion, self.limits)?
+        {
+            if let Some(path) = self.onto.onto.as_ref().filter(|path| open::is_gltf(path))
+                && target.id == Id::Glb
+            {
+                return Ok(warned(path, open::reanimated(path, &carried, &self.name())?));
+            }
+            return self.written(&onto, carried, target);
+        }
         if self.limits == Limits::On {
             let legal::Kept { solved, lost } = legal::keep(model, &mut motion);
             let all = motion.frames.len();
@@ -322,9 +343,19 @@ impl Convert {
                 ));
             }
         }
+        self.written(model, motion, target)
+    }
+
+    /// A motion of a model in another format.
+    fn written(
+        &self,
+        model: &Model,
+        mut motion: Motion,
+        target: &Format,
+    ) -> Result<Vec<u8>, Failure> {
         match target.id {
             Id::Glb => return self.scene(model, &motion),
-            Id::Bvh => return self.skeleton(target, model, &motion),
+            Id::Bvh | Id::Usda => return self.skeleton(target, model, &motion),
             Id::Trc | Id::C3d => return self.virtual_markers(model, &motion, target),
             _ => motion.make_effective(&Program::compile(model), self.mode()),
         }

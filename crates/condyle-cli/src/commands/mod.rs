@@ -20,6 +20,7 @@ use condyle::formats::skeleton::{Assumed, named_unit};
 use condyle::formats::{FORMATS, Format};
 use condyle::model::UpAxis;
 use condyle::{AngleUnit, Zeros, open};
+use std::path::PathBuf;
 
 /// Anatomical joints: models, limits, and tracking of markers.
 #[derive(Debug, Parser)]
@@ -33,7 +34,14 @@ pub(crate) struct Arguments {
     /// written are cm.
     #[arg(long, global = true, value_name = "UNIT", value_parser = length_unit)]
     length_unit: Option<f64>,
-    /// Which animation is read of a file that holds several (.glb, .gltf): its name, or its number
+    /// Frames per second of a file that does not state it, such as an .amc; without it, 120.
+    #[arg(long, global = true, value_name = "N", value_parser = frame_rate)]
+    frame_rate: Option<f64>,
+    /// The skeleton (.asf) of takes (.amc); without it, the model if that is one, else the .asf of the subject
+    /// beside the take.
+    #[arg(long, global = true, value_name = "F.asf")]
+    skeleton: Option<PathBuf>,
+    /// Which animation is read of a file that holds several (.glb, .gltf, .fbx): its name, or its number
     /// counted from 1. Without it, the first.
     #[arg(long, global = true, value_name = "NAME")]
     animation: Option<String>,
@@ -55,6 +63,12 @@ enum Up {
 fn length_unit(name: &str) -> Result<f64, String> {
     let help = "give m, cm, mm, in, ft, cmu, or a positive number of metres";
     named_unit(name).ok_or_else(|| help.to_owned())
+}
+
+/// Frames per second.
+fn frame_rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate: &f64| *rate > 0.0 && rate.is_finite());
+    rate.ok_or_else(|| "give a positive number".to_owned())
 }
 
 /// The names of all formats that are read.
@@ -153,7 +167,14 @@ pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
     if let Some(name) = &arguments.animation {
         open::animation_is(name);
     }
-    open::skeletons_are(Assumed { metres_per_unit: arguments.length_unit, up });
+    if let Some(path) = &arguments.skeleton {
+        open::skeleton_is(path);
+    }
+    open::skeletons_are(Assumed {
+        metres_per_unit: arguments.length_unit,
+        up,
+        rate: arguments.frame_rate,
+    });
     // What is read from here on is not written over.
     open::files_read();
     match arguments.command {

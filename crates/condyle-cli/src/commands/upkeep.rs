@@ -6,10 +6,9 @@ use crate::motion_format::names;
 use crate::output;
 use crate::screen::say;
 use clap::Args;
-use condyle::formats::c3d::Trial;
 use condyle::formats::{Content, ContentKind, Format, Id};
 use condyle::upkeep::{Axes, Done, Plan};
-use condyle::{Recording, Table, encode, open};
+use condyle::{LengthUnit, Recording, Table, encode, open};
 use std::path::{Path, PathBuf};
 
 /// What can be written.
@@ -79,27 +78,26 @@ impl Upkeep {
         output::check_distinct(&[&self.input], &[&self.output])?;
         let content =
             warned(&self.input, open::content_with(&self.input, None, zeros(self.zeros))?);
-        let (content, trial) = match content {
-            Content::Trial(mut trial) => {
-                let recording = std::mem::take(&mut trial.recording);
-                (Content::Recording(recording), Some(trial))
-            }
-            other => (other, None),
-        };
         let bytes = match content {
             Content::Table(table) => self.table(table, plan, target)?,
             Content::Recording(recording) if plan.differentiate => {
-                // Speeds of markers are a table; all else is done to the markers first.
-                let mut recording = recording;
-                let positions = Plan { differentiate: false, ..plan };
-                let done = self.done(positions.recording(&mut recording))?;
-                let mut table = recording.to_table();
-                table.header = vec![("Units".into(), "m/s".into())];
-                table.header.extend(remarks(&done));
-                let speeds = Plan { differentiate: true, ..Plan::default() };
-                self.table(table, speeds, target)?
+                self.speeds(recording, plan, target)?
             }
-            Content::Recording(recording) => self.recording(recording, trial, plan, target)?,
+            Content::Trial(trial) if plan.differentiate => {
+                self.speeds(trial.recording, plan, target)?
+            }
+            Content::Trial(mut trial) if target.id == Id::C3d => {
+                self.done(trial.keep_up(&plan))?;
+                encode::trial(target, &trial, "")?
+            }
+            Content::Trial(trial) => {
+                if trial.others.len() + trial.analog.channels.len() > 0 {
+                    say("note: only the markers are written, not what else the C3D file holds");
+                }
+                let units = LengthUnit::Millimetre;
+                self.recording(Recording { units, ..trial.recording }, plan, target)?
+            }
+            Content::Recording(recording) => self.recording(recording, plan, target)?,
             other => {
                 return Err(Failure::new(format!(
                     "{}: the file holds {}; upkeep takes marker recordings, motions and tables (`condyle convert` \
@@ -119,25 +117,30 @@ impl Upkeep {
         Ok(encode::table(target, &table)?)
     }
 
-    fn recording(
+    /// Speeds of markers are a table; all else is done to the markers first.
+    fn speeds(
         &self,
         mut recording: Recording,
-        trial: Option<Box<Trial>>,
         plan: Plan,
         target: &Format,
     ) -> Result<Vec<u8>, Failure> {
-        let times = recording.times.clone();
+        let positions = Plan { differentiate: false, ..plan };
+        let done = self.done(positions.recording(&mut recording))?;
+        let mut table = recording.to_table();
+        table.header = vec![("Units".into(), "m/s".into())];
+        table.header.extend(remarks(&done));
+        let speeds = Plan { differentiate: true, ..Plan::default() };
+        self.table(table, speeds, target)
+    }
+
+    fn recording(
+        &self,
+        mut recording: Recording,
+        plan: Plan,
+        target: &Format,
+    ) -> Result<Vec<u8>, Failure> {
         let done = self.done(plan.recording(&mut recording))?;
         let name = self.output.file_name().unwrap_or_default().to_string_lossy();
-        if let Some(mut trial) = trial {
-            // What stands beside the markers fits them as long as their frames and axes are the same.
-            if target.id == Id::C3d && self.axes.is_none() && recording.times == times {
-                trial.recording = recording;
-                trial.parameters.set_texts("PROCESSING", "UPKEEP", &done.steps);
-                return Ok(encode::trial(target, &trial, &name)?);
-            }
-            say("note: only the markers are written, not what else the C3D file holds");
-        }
         Ok(encode::recording_with_remarks(target, &recording, &name, &done.steps)?)
     }
 

@@ -118,7 +118,13 @@ fn skeleton(joints: &[Joint], warnings: &mut Warnings) -> Skeleton {
     });
     // Figures in such files look along +z by custom.
     let facing = condyle_model::model::Facing::PlusZ;
-    Skeleton { name: String::new(), up: UpAxis::Y, facing, bones: bones.collect() }
+    Skeleton {
+        name: String::new(),
+        up: UpAxis::Y,
+        facing,
+        bones: bones.collect(),
+        ..Skeleton::default()
+    }
 }
 
 /// Brings lengths to metres.

@@ -150,7 +150,9 @@ pub(super) fn channels(
             1.0
         });
         let offset = offsets.get(index).copied().filter(|o| o.is_finite()).unwrap_or(0.0);
-        let offset = if unsigned && offset < 0.0 { offset + 65536.0 } else { offset };
+        // No float of a channel is near -32768: the word of 16 bits has no sign.
+        let wrapped = unsigned && offset < 0.0 || layout.real && offset == -32768.0;
+        let offset = if wrapped { offset + 65536.0 } else { offset };
         Channel { label, unit: units.get(index).cloned().unwrap_or_default(), scale, offset }
     });
     let channels: Vec<Channel> = channels.collect();

@@ -36,6 +36,7 @@ mod platform;
 mod read;
 mod section;
 mod trial;
+mod upkeep;
 mod vertical;
 mod write;
 

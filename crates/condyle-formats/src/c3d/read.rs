@@ -30,7 +30,8 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Read<Trial>, Error> {
     let rate = rate(&header, &parameters, &mut warnings);
     let per_frame = layout::samples(&header, &parameters);
     let mut analog = analog::channels(&parameters, layout, per_frame, rate, &mut warnings);
-    let scale = layout::scale(&header, &parameters) as f32;
+    let scale =
+        whole_scale(&header, layout, layout::scale(&header, &parameters) as f32, &mut warnings);
     if scale == 0.0 && !layout.real {
         let message = "POINT:SCALE is missing or zero";
         let said = Diagnostic::warning("c3d/scale", message);
@@ -72,6 +73,20 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Read<Trial>, Error> {
         storage: Storage { processor: source.processor, whole: !layout.real },
     };
     Ok(Read { value: trial, warnings: warnings.finish() })
+}
+
+/// The scale of whole numbers: that of the header where it differs from the parameter, as header and frames are
+/// written together and parameters by many programs.
+fn whole_scale(header: &Header, layout: Layout, stated: f32, warnings: &mut Warnings) -> f32 {
+    let (ours, theirs) = (header.scale.abs(), stated.abs());
+    let differ = ours.is_finite() && ours > 0.0 && (ours - theirs).abs() > 0.01 * ours;
+    if layout.real || !differ || theirs == 0.0 {
+        return stated;
+    }
+    let message = format!("the scale is {ours} by the header, {theirs} by POINT:SCALE");
+    warnings
+        .push(Diagnostic::warning("c3d/scale", message).with_help("that of the header is used"));
+    ours
 }
 
 /// Tells the processor and where the parameters start.
@@ -259,15 +274,7 @@ impl Decoder<'_> {
         row.clear();
         let processor = self.source.processor;
         match (self.layout.real, processor) {
-            (true, Processor::Intel) => row.extend(
-                bytes
-                    .as_chunks::<4>()
-                    .0
-                    .as_chunks::<4>()
-                    .0
-                    .iter()
-                    .map(|p| p.map(f32::from_le_bytes)),
-            ),
+            (true, Processor::Intel) => row.extend(bytes.as_chunks::<16>().0.iter().map(intel)),
             (true, _) => row.extend(
                 bytes
                     .as_chunks::<4>()
@@ -303,31 +310,57 @@ impl Decoder<'_> {
     }
 
     fn read(&self, points: &mut Points, analog: &mut Analog, unit: LengthUnit, up: Up) {
+        // Loops without a choice in them, for what most files are.
+        match (unit, up) {
+            (LengthUnit::Millimetre, Up::Y) => self.read_with(points, analog, thousandth, |p| p),
+            (LengthUnit::Millimetre, Up::Z) => {
+                self.read_with(points, analog, thousandth, |[x, y, z]| [x, z, 0.0 - y]);
+            }
+            (LengthUnit::Metre, Up::Y) => self.read_with(points, analog, f64::from, |p| p),
+            (LengthUnit::Metre, Up::Z) => {
+                self.read_with(points, analog, f64::from, |[x, y, z]| [x, z, 0.0 - y]);
+            }
+            _ => {
+                let metres = |x: f32| unit.to_metres(f64::from(x));
+                self.read_with(points, analog, metres, |p| up.turned(p));
+            }
+        }
+    }
+
+    fn read_with(
+        &self,
+        points: &mut Points,
+        analog: &mut Analog,
+        metres: impl Fn(f32) -> f64,
+        turned: impl Fn([f64; 3]) -> [f64; 3],
+    ) {
+        let marker = |point: &[f32; 4]| {
+            let [x, y, z, _] = *point;
+            let place = turned([metres(x), metres(y), metres(z)]);
+            if is_seen(*point) { Observed::from(place) } else { Observed::MISSING }
+        };
         let mut row: Vec<[f32; 4]> = Vec::with_capacity(self.layout.points);
         let Points { columns, positions, words, others, .. } = points;
         for frame in 0..self.layout.frames {
             let (of_points, of_channels) = self.frame(frame);
             self.points(of_points, &mut row);
-            for (point, column) in row.iter().zip(columns.iter()) {
-                let [x, y, z, word] = *point;
-                let seen = word >= 0.0 || word.is_nan();
-                let seen = seen & x.is_finite() & y.is_finite() & z.is_finite();
-                // A word that is no number says nothing of the marker.
-                let word = if seen { word.max(0.0) } else { missing_word(true) };
-                match *column {
-                    Column::Marker(_) => {
-                        let place = [x, y, z].map(|x| unit.to_metres(f64::from(x)));
-                        positions.push(if seen {
-                            up.turned(place).into()
-                        } else {
-                            Observed::MISSING
-                        });
-                        words.push(word);
-                    }
-                    Column::Other(index) => {
-                        if let Some(other) = others.get_mut(index) {
-                            other.values.push(if seen { [x, y, z] } else { [0.0; 3] });
-                            other.words.push(word);
+            if others.is_empty() {
+                positions.extend(row.iter().map(marker));
+                words.extend(row.iter().map(|point| word(*point)));
+            } else {
+                for (point, column) in row.iter().zip(columns.iter()) {
+                    let [x, y, z, _] = *point;
+                    match *column {
+                        Column::Marker(_) => {
+                            positions.push(marker(point));
+                            words.push(word(*point));
+                        }
+                        Column::Other(index) => {
+                            if let Some(other) = others.get_mut(index) {
+                                let seen = is_seen(*point);
+                                other.values.push(if seen { [x, y, z] } else { [0.0; 3] });
+                                other.words.push(word(*point));
+                            }
                         }
                     }
                 }
@@ -337,9 +370,73 @@ impl Decoder<'_> {
     }
 }
 
+/// The four floats of a point.
+#[inline]
+fn intel(bytes: &[u8; 16]) -> [f32; 4] {
+    // One load; of an array of arrays the compiler makes calls.
+    let bits = u128::from_le_bytes(*bytes);
+    [
+        f32::from_bits(bits as u32),
+        f32::from_bits((bits >> 32) as u32),
+        f32::from_bits((bits >> 64) as u32),
+        f32::from_bits((bits >> 96) as u32),
+    ]
+}
+
+/// Whether a point is there: its word is not negative, and its numbers are numbers.
+#[inline]
+fn is_seen([x, y, z, word]: [f32; 4]) -> bool {
+    // A word that is no number says nothing of the marker.
+    let stated = (word >= 0.0) | word.is_nan();
+    stated & x.is_finite() & y.is_finite() & z.is_finite()
+}
+
+/// The word of a point that is kept.
+#[inline]
+fn word(point: [f32; 4]) -> f32 {
+    if is_seen(point) { point[3].max(0.0) } else { missing_word(true) }
+}
+
+/// A float divided by 1000, to the nearest double, without a division.
+///
+/// A thousandth is the sum of a number of 29 bits, whose product with the 24 of a float is exact, and a rest
+/// whose product is off by less than 2^-82 of the result. So near to the middle of two doubles no quotient by
+/// 125 lies: such a quotient is at least 2^-61 away from it.
+#[inline]
+fn thousandth(length: f32) -> f64 {
+    const HIGH: f64 = f64::from_bits(0.001f64.to_bits() & !((1 << 24) - 1));
+    // The rest of 0.001 that a double leaves, 0.001 - fl(0.001) = -2.0816681711721685e-20, belongs to it.
+    const LOW: f64 = (0.001 - HIGH) - 2.081_668_171_172_168_5e-20;
+    let length = f64::from(length);
+    length * HIGH + length * LOW
+}
+
 /// Whether bytes look like a C3D file.
 pub(crate) fn is_c3d(bytes: &[u8]) -> bool {
     let [number, 0x50, ..] = *bytes else { return false };
     let start = block(usize::from(number).max(2));
     bytes.get(start + 3).is_some_and(|code| Processor::from_code(*code).is_some())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thousandth_is_that_of_a_division() {
+        // Every 29th float of a binade, and some of all others.
+        let mut bits = 0x3f80_0000u32;
+        while bits < 0x4000_0000 {
+            let x = f32::from_bits(bits);
+            assert_eq!(thousandth(x), f64::from(x) / 1000.0, "{x}");
+            bits += 29;
+        }
+        for exponent in 0..255u32 {
+            for fraction in (0..1 << 23).step_by(104_729) {
+                let x = f32::from_bits(exponent << 23 | fraction);
+                assert_eq!(thousandth(x), f64::from(x) / 1000.0, "{x:e}");
+                assert_eq!(thousandth(-x), f64::from(-x) / 1000.0, "{x:e}");
+            }
+        }
+    }
 }

@@ -148,7 +148,13 @@ fn described_channels(trial: &Trial, all: &mut Parameters) {
     let unsigned = super::analog::unsigned(all);
     let offsets: Vec<f64> = channels
         .iter()
-        .map(|c| if unsigned && c.offset > 32767.0 { c.offset - 65536.0 } else { c.offset })
+        .map(|c| {
+            if unsigned && c.offset > 32767.0 || c.offset == 32768.0 {
+                c.offset - 65536.0
+            } else {
+                c.offset
+            }
+        })
         .collect();
     if !starts_with(&all.numbers("ANALOG", "OFFSET"), &offsets) {
         let whole = offsets.iter().all(|o| o.fract() == 0.0 && (-32768.0..=32767.0).contains(o));

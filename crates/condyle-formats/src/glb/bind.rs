@@ -6,6 +6,7 @@
 //! `rest = B_parent⁻¹ · B`.
 
 use super::accessor::Accessors;
+use super::figure::Still;
 use super::json::Item;
 use super::scene::LocalPose;
 use super::tree::{Tree, affine};
@@ -13,16 +14,8 @@ use condyle_diagnostics::{Diagnostic, Error, Warnings};
 use condyle_math::{Affine, Mat3, Quat, Vec3};
 use std::collections::HashMap;
 
-/// The joints of all skins, and the rest of every node.
-pub(super) struct Bound {
-    /// Whether each node is a joint of a skin.
-    pub(super) joint: Vec<bool>,
-    /// Where each node is in its parent at rest, without the scale of nodes, which is theirs.
-    pub(super) rest: Vec<LocalPose>,
-}
-
-impl Bound {
-    /// Reads the skins.
+impl Still {
+    /// Reads the skins: their joints, and where those are bound. The scale of a node is its own.
     ///
     /// # Errors
     /// `glb/json`, `glb/reference`, `glb/no-joints` for a skin without joints.

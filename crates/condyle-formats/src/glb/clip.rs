@@ -18,7 +18,7 @@ use std::rc::Rc;
 
 /// How a channel goes from key to key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Between {
+pub(crate) enum Between {
     Linear,
     Step,
     Cubic,
@@ -26,7 +26,7 @@ pub(super) enum Between {
 
 /// What a channel moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Path {
+pub(crate) enum Path {
     Translation,
     Rotation,
     Scale,
@@ -34,12 +34,12 @@ pub(super) enum Path {
 
 /// The keys of one property of one node.
 #[derive(Clone, Debug)]
-pub(super) struct Channel {
-    pub(super) node: usize,
-    pub(super) path: Path,
-    pub(super) between: Between,
+pub(crate) struct Channel {
+    pub(crate) node: usize,
+    pub(crate) path: Path,
+    pub(crate) between: Between,
     /// Rising.
-    pub(super) times: Rc<Vec<f64>>,
+    pub(crate) times: Rc<Vec<f64>>,
     /// For each time its place among the keys of `values`.
     keys: Rc<Vec<usize>>,
     values: Rc<Numbers>,
@@ -47,11 +47,25 @@ pub(super) struct Channel {
 
 /// An animation.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Clip {
-    pub(super) channels: Vec<Channel>,
+pub(crate) struct Clip {
+    pub(crate) channels: Vec<Channel>,
 }
 
 impl Channel {
+    /// A channel with a value at each of these times, linear between them; of a clock times, and the numbers of their keys.
+    #[cfg(feature = "fbx")]
+    pub(crate) fn sampled(
+        node: usize,
+        path: Path,
+        (times, keys): (&Rc<Vec<f64>>, &Rc<Vec<usize>>),
+        values: Vec<f64>,
+    ) -> Self {
+        let width = if path == Path::Rotation { 4 } else { 3 };
+        let values = Rc::new(Numbers { values, width });
+        let (times, keys) = (Rc::clone(times), Rc::clone(keys));
+        Self { node, path, between: Between::Linear, times, keys, values }
+    }
+
     /// Its value at a time: three numbers or a unit quaternion.
     pub(super) fn at(&self, time: f64) -> [f64; 4] {
         let after = self.times.partition_point(|t| *t <= time);
@@ -94,7 +108,7 @@ impl Channel {
     }
 
     /// Whether it has the same value at every key, to single precision and a little more.
-    pub(super) fn is_still(&self) -> bool {
+    pub(crate) fn is_still(&self) -> bool {
         let first = self.key(0, 1);
         let least = 2e-6 * first.iter().fold(0.0, |most: f64, x| most.max(x.abs())) + 1e-7;
         let near = |a: [f64; 4]| a.iter().zip(first).all(|(a, b)| (a - b).abs() <= least);

@@ -7,7 +7,6 @@
 //! places = R0⁻¹·(T - T0)·f·u      orientation = R0⁻¹·R      sizes = S
 //! ```
 
-use super::bind::Bound;
 use super::clip::{Clip, Path};
 use super::reanimate::{NodeMotion, NodeTrack};
 use super::scene::LocalPose;
@@ -19,6 +18,14 @@ use condyle_model::UpAxis;
 use condyle_model::model::Facing;
 use condyle_motion::Motion;
 
+/// What nodes are while nothing moves them.
+pub(crate) struct Still {
+    /// Whether each node is a joint.
+    pub(crate) joint: Vec<bool>,
+    /// Where each node is in its parent at rest.
+    pub(crate) rest: Vec<LocalPose>,
+}
+
 /// How one node moves.
 #[derive(Clone, Copy, Debug, Default)]
 struct Moved {
@@ -28,8 +35,8 @@ struct Moved {
 }
 
 /// The bones and what they are made from.
-pub(super) struct Figure {
-    pub(super) skeleton: Skeleton,
+pub(crate) struct Figure {
+    pub(crate) skeleton: Skeleton,
     /// The node of each bone.
     nodes: Vec<usize>,
     moved: Vec<Moved>,
@@ -40,7 +47,7 @@ pub(super) struct Figure {
 }
 
 impl Figure {
-    pub(super) fn new(tree: &Tree, bound: &Bound, clip: &Clip, warnings: &mut Warnings) -> Self {
+    pub(crate) fn new(tree: &Tree, bound: &Still, clip: &Clip, warnings: &mut Warnings) -> Self {
         let count = tree.nodes.len();
         // Values that channels hold throughout.
         let mut still: Vec<LocalPose> = tree.nodes.iter().map(|node| node.local).collect();
@@ -108,7 +115,7 @@ impl Figure {
         if let Some((index, own)) = scaled {
             let message = format!("node `{}` has a scale of {own:.6}", tree.nodes[index].name);
             warnings.push(
-                Diagnostic::warning("glb/scale", message)
+                Diagnostic::warning("skeleton/scale", message)
                     .with_help("the lengths below it are multiplied by it, the bones are rigid"),
             );
         }
@@ -116,7 +123,7 @@ impl Figure {
     }
 
     /// Lengths become metres.
-    pub(super) fn settle_unit(&mut self, assumed: &Assumed, warnings: &mut Warnings) {
+    pub(crate) fn settle_unit(&mut self, assumed: &Assumed, warnings: &mut Warnings) {
         let rest = self.skeleton.rest();
         let points = rest.iter().flat_map(|(_, joint, ends)| ends.iter().copied().chain([*joint]));
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
@@ -151,10 +158,10 @@ impl Figure {
     }
 
     /// The frames: for each bone where it is beside its rest.
-    pub(super) fn motion(
+    pub(crate) fn motion(
         &self,
         tree: &Tree,
-        bound: &Bound,
+        bound: &Still,
         clip: &Clip,
         size: usize,
         warnings: &mut Warnings,
@@ -212,7 +219,7 @@ impl Figure {
     pub(super) fn tracks(
         &self,
         tree: &Tree,
-        bound: &Bound,
+        bound: &Still,
         motion: &Motion,
     ) -> Result<NodeMotion, Error> {
         let freedoms = self.skeleton.bones.iter().flat_map(|bone| &bone.freedoms);
@@ -331,7 +338,7 @@ fn chosen_nodes(
             "what moves beside the skeleton is not read: {}",
             condyle_diagnostics::listed(&left)
         );
-        warnings.push(Diagnostic::warning("glb/left-out", message));
+        warnings.push(Diagnostic::warning("skeleton/left-out", message));
     }
     chosen
 }

@@ -1,4 +1,5 @@
-//! GLB, binary glTF 2.0: an animated figure in one file.
+//! GLB, binary glTF 2.0: an animated figure in one file. Skins, their skeletons and animations are read ([`read`]), a user's
+//! own file is given back with another motion ([`reanimate`]), and scenes are written:
 //!
 //! A [`Scene`] is a tree of named nodes, surfaces that hang on them, a list of times, and for each moving
 //! node its transform in its parent at every time. The surfaces are written as one skinned mesh whose
@@ -22,14 +23,22 @@ mod reanimate;
 mod scene;
 mod skin;
 mod splice;
+mod stretch;
 mod tree;
 mod write;
 
 pub use accessor::Beside;
+#[cfg(feature = "fbx")]
+pub(crate) use clip::{Channel, Clip, Path};
 pub(crate) use container::looks_like_json;
+#[cfg(feature = "fbx")]
+pub(crate) use figure::{Figure, Still};
+#[cfg(feature = "fbx")]
+pub(crate) use tree::{Tree, TreeNode};
 
 pub use condyle_mesh::{Finish, Mesh};
 pub use read::{Options, from_bytes, node_motion, read};
 pub use reanimate::{NodeMotion, NodeTrack, Old, reanimate};
-pub use scene::{LocalPose, MarkerTrack, Scene, SceneNode, Surface, Track, UpAxis};
+pub use scene::{Driven, LocalPose, MarkerTrack, Scene, SceneNode, Surface, Track, UpAxis};
+pub use stretch::in_two;
 pub use write::write;

@@ -1,10 +1,9 @@
 //! The skeleton of a file, and what it does.
 
 use super::accessor::{Accessors, Beside};
-use super::bind::Bound;
 use super::clip::Clip;
 use super::container::Container;
-use super::figure::Figure;
+use super::figure::{Figure, Still};
 use super::json::{self, Item};
 use super::reanimate::NodeMotion;
 use super::tree::Tree;
@@ -43,8 +42,8 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Read<Animation>, Error> {
 ///
 /// # Warnings
 /// `glb/animations` where the file holds several and none was asked for, `glb/rest` where rest is not where
-/// nodes stand, `glb/scale` for lengths that are multiplied, `skeleton/unit` for a figure in centimetres,
-/// `glb/left-out` for what moves and is no part of the skeleton; repairs: `glb/length`, `glb/chunk`, `glb/parents`, `glb/roots`,
+/// nodes stand, `skeleton/scale` for lengths that are multiplied, `skeleton/unit` for a figure in centimetres,
+/// `skeleton/left-out` for what moves and is no part of the skeleton; repairs: `glb/length`, `glb/chunk`, `glb/parents`, `glb/roots`,
 /// `glb/rotation`, `glb/shear`, `glb/bind`, `glb/channel`, `glb/time`, `glb/uneven`, `glb/frames`, `skeleton/name`.
 ///
 /// # Errors
@@ -69,8 +68,9 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Read<Animation>, Error> {
 /// let read = glb::read(text.as_bytes(), &Options::default(), &mut |_| Ok(bytes.clone()))?;
 /// let animation = read.value;
 /// assert_eq!(animation.motion.times, [0.0, 1.0]);
-/// assert_eq!(animation.model.stored_len(), 8);
-/// assert!((animation.motion.frames[1][2] - 0.5f64.sqrt()).abs() < 1e-7);
+/// // Three numbers for the place of the root, four for each orientation.
+/// assert_eq!(animation.model.stored_len(), 11);
+/// assert!((animation.motion.frames[1][5] - 0.5f64.sqrt()).abs() < 1e-7);
 /// # Ok::<(), condyle_formats::Error>(())
 /// ```
 pub fn read(
@@ -107,7 +107,7 @@ pub fn node_motion(
 /// What a file consists of.
 struct Parts {
     tree: Tree,
-    bound: Bound,
+    bound: Still,
     clip: Clip,
     figure: Figure,
 }
@@ -125,7 +125,7 @@ fn parts(
     let binary = container.binary.and_then(|range| bytes.get(range));
     let mut accessors = Accessors::new(&value, binary, beside, bytes.len());
     let tree = Tree::read(&root, warnings)?;
-    let bound = Bound::read(&root, &tree, &mut accessors, warnings)?;
+    let bound = Still::read(&root, &tree, &mut accessors, warnings)?;
     let chosen = chosen(&root, options, warnings)?;
     if chosen.is_none() && !bound.joint.contains(&true) {
         let message = "the file has neither a skin nor an animation";
@@ -193,7 +193,7 @@ fn chosen<'j>(
 }
 
 /// What the figure is called: its skin, or the node above its first joint.
-fn name<'j>(root: &Item<'j>, tree: &'j Tree, bound: &Bound) -> Option<&'j str> {
+fn name<'j>(root: &Item<'j>, tree: &'j Tree, bound: &Still) -> Option<&'j str> {
     let skin = root.element("skins", 0).ok().and_then(|skin| skin.text("name"));
     let above = || {
         let first = tree.order.iter().find(|index| bound.joint[**index])?;

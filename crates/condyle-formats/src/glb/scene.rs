@@ -2,6 +2,7 @@
 
 use condyle_math::Affine;
 use condyle_mesh::{Finish, Mesh};
+use condyle_model::model::Facing;
 
 /// The axis that points up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -88,6 +89,20 @@ pub struct MarkerTrack {
     pub positions: Vec<Option<[f64; 3]>>,
 }
 
+/// What a number drives outside of the figure, such as a morph or a muscle.
+///
+/// glTF animates nothing but nodes and morphs, so it is written as a node of that name whose place along x is the value, in
+/// metres a unit: every program shows it, and can drive a property of its own by it. The node's extras say `{"drives": NAME}`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Driven {
+    /// What is driven.
+    pub name: String,
+    /// Its value where no time is given.
+    pub rest: f64,
+    /// One for each time.
+    pub values: Vec<f64>,
+}
+
 /// A figure, its motion and the markers it follows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
@@ -95,6 +110,8 @@ pub struct Scene {
     pub name: String,
     /// The axis that points up in the figure's world.
     pub up: UpAxis,
+    /// Where the figure looks; the node above all others is turned so that it looks along +z, as glTF asks.
+    pub facing: Facing,
     /// Parents before their children.
     pub nodes: Vec<SceneNode>,
     /// What is drawn.
@@ -103,6 +120,8 @@ pub struct Scene {
     pub times: Vec<f64>,
     /// Nodes without one stay at rest.
     pub tracks: Vec<Track>,
+    /// What is driven besides the figure's nodes.
+    pub driven: Vec<Driven>,
     /// Drawn besides the figure.
     pub markers: Vec<MarkerTrack>,
     /// Radius of the markers' balls in metres; 8 mm by default.
@@ -114,10 +133,12 @@ impl Default for Scene {
         Self {
             name: String::new(),
             up: UpAxis::Y,
+            facing: Facing::PlusZ,
             nodes: Vec::new(),
             surfaces: Vec::new(),
             times: Vec::new(),
             tracks: Vec::new(),
+            driven: Vec::new(),
             markers: Vec::new(),
             marker_radius: 0.008,
         }

@@ -8,26 +8,26 @@ use condyle_math::{Affine, Mat3, Quat, Vec3};
 
 /// A node.
 #[derive(Clone, Debug)]
-pub(super) struct TreeNode {
+pub(crate) struct TreeNode {
     /// Its name; one that has none is called `node_` and its number.
-    pub(super) name: String,
+    pub(crate) name: String,
     /// On which it hangs.
-    pub(super) parent: Option<usize>,
+    pub(crate) parent: Option<usize>,
     /// Where it is in that.
-    pub(super) local: LocalPose,
+    pub(crate) local: LocalPose,
     /// Whether it shows something: a mesh, a camera or a light.
-    pub(super) shows: bool,
+    pub(crate) shows: bool,
     /// The skin of its mesh.
-    pub(super) skin: Option<usize>,
+    pub(crate) skin: Option<usize>,
 }
 
 /// All nodes, and an order in which parents come first.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Tree {
+pub(crate) struct Tree {
     /// In the order of the file.
-    pub(super) nodes: Vec<TreeNode>,
+    pub(crate) nodes: Vec<TreeNode>,
     /// Each after its parent.
-    pub(super) order: Vec<usize>,
+    pub(crate) order: Vec<usize>,
 }
 
 /// A shear that is told, without unit.
@@ -82,6 +82,16 @@ impl Tree {
         Ok(Self { nodes, order })
     }
 
+    /// The tree of these nodes.
+    ///
+    /// # Errors
+    /// `glb/cycle` where a node is below itself.
+    #[cfg(feature = "fbx")]
+    pub(crate) fn of(nodes: Vec<TreeNode>) -> Result<Self, Error> {
+        let order = order(&nodes)?;
+        Ok(Self { nodes, order })
+    }
+
     /// Where every node is in the scene while nothing moves it.
     pub(super) fn world(&self) -> Vec<Affine> {
         let mut world = vec![Affine::IDENTITY; self.nodes.len()];
@@ -115,7 +125,7 @@ fn names(root: &Item<'_>, nodes: &[TreeNode]) -> Result<Vec<String>, Error> {
 }
 
 /// The transform of a place.
-pub(super) fn affine(place: &LocalPose) -> Affine {
+pub(crate) fn affine(place: &LocalPose) -> Affine {
     let turn = Quat::from(place.rotation).to_mat3();
     let [x, y, z] = place.scale;
     Affine::new(

@@ -13,8 +13,9 @@ use super::pack::Pack;
 use super::scene::{LocalPose, Scene, UpAxis};
 use super::skin;
 use condyle_diagnostics::Error;
-use condyle_math::{Mat3, Vec3};
+use condyle_math::{Mat3, Quat, Vec3};
 use condyle_mesh::{Ball, Finish, Form};
+use serde_json::value::to_raw_value;
 
 /// Writes a scene.
 ///
@@ -56,24 +57,19 @@ pub fn write(scene: &Scene) -> Result<Vec<u8>, Error> {
     writer.root.asset.generator = Some("condyle".to_owned());
     let figure = writer.figure();
     let skinned = writer.skin(&figure);
-    let markers = writer.markers();
+    let mut markers = writer.markers();
+    markers.extend(writer.driven());
     let animation = writer.animation(&figure, &markers);
     if !animation.channels.is_empty() {
         writer.root.push(animation);
     }
     let tops = scene.nodes.iter().zip(&figure).filter(|(n, _)| n.parent.is_none());
     let tops = tops.map(|(_, index)| *index).chain(markers.iter().map(|m| m.node)).collect();
+    let turn = ahead(scene);
     let top = writer.root.push(Node {
         name: Some(scene.name.clone()),
         children: Some(tops).filter(|c: &Vec<_>| !c.is_empty()),
-        rotation: match scene.up {
-            UpAxis::Y => None,
-            // A quarter turn about x takes z to y.
-            UpAxis::Z => {
-                let half = std::f32::consts::FRAC_1_SQRT_2;
-                Some(UnitQuaternion([-half, 0.0, 0.0, half]))
-            }
-        },
+        rotation: (turn.w < 1.0).then(|| UnitQuaternion(turn.to_array().map(|x| x as f32))),
         ..Node::default()
     });
     let shown = writer.root.push(gltf_json::Scene {
@@ -85,6 +81,23 @@ pub fn write(scene: &Scene) -> Result<Vec<u8>, Error> {
     });
     writer.root.scene = Some(shown);
     writer.finish()
+}
+
+/// The turn of the whole figure so that it stands along y and looks along z.
+fn ahead(scene: &Scene) -> Quat {
+    // A quarter turn about x takes z to y.
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let upright = match scene.up {
+        UpAxis::Y => Quat::IDENTITY,
+        UpAxis::Z => Quat::from([-half, 0.0, 0.0, half]),
+    };
+    let front = upright.to_mat3() * scene.facing.direction();
+    let yaw = match front.y.abs() < 0.5 {
+        true => -front.x.atan2(front.z),
+        // One that looks along its own vertical tells nothing.
+        false => 0.0,
+    };
+    Quat::from_axis_angle(Vec3::Y, yaw) * upright
 }
 
 /// Validates a scene before anything is built.
@@ -127,6 +140,15 @@ fn check(scene: &Scene) -> Result<(), Error> {
         check_length(marker.positions.len(), scene, &marker.name)?;
         if marker.positions.iter().flatten().flatten().any(|x| !x.is_finite()) {
             return Err(Error::new("glb/pose", format!("marker `{}` is not finite", marker.name)));
+        }
+    }
+    for driven in &scene.driven {
+        check_length(driven.values.len(), scene, &driven.name)?;
+        if !driven.values.iter().chain([&driven.rest]).all(|x| x.abs() < 1e9) {
+            return Err(Error::new(
+                "glb/pose",
+                format!("what drives `{}` is not finite", driven.name),
+            ));
         }
     }
     if !scene.markers.is_empty() && ball(scene.marker_radius).check().is_err() {
@@ -198,7 +220,7 @@ pub(super) struct Writer<'s> {
     materials: BTreeMap<Finish, Index<Material>>,
 }
 
-/// A marker's node and its place at every key.
+/// A node that only moves, of a marker or a driven value, and its place at every key.
 struct MarkerNode {
     node: Index<Node>,
     places: Vec<[f32; 3]>,
@@ -263,6 +285,24 @@ impl Writer<'_> {
                 name: Some(marker.name.clone()),
                 mesh,
                 translation: places.first().copied(),
+                ..Node::default()
+            });
+            nodes.push(MarkerNode { node, places });
+        }
+        nodes
+    }
+
+    /// One node for each thing that is driven: its place along x is the value.
+    fn driven(&mut self) -> Vec<MarkerNode> {
+        let mut nodes = Vec::new();
+        for driven in &self.scene.driven {
+            let place = |value: f64| [value as f32, 0.0, 0.0];
+            let values = self.kept.iter().filter_map(|(frame, _)| driven.values.get(*frame));
+            let places: Vec<[f32; 3]> = values.map(|value| place(*value)).collect();
+            let node = self.root.push(Node {
+                name: Some(driven.name.clone()),
+                translation: Some(places.first().copied().unwrap_or(place(driven.rest))),
+                extras: to_raw_value(&serde_json::json!({ "drives": driven.name })).ok(),
                 ..Node::default()
             });
             nodes.push(MarkerNode { node, places });

@@ -15,6 +15,8 @@ pub struct Assumed {
     pub metres_per_unit: Option<f64>,
     /// The axis that points up.
     pub up: Option<UpAxis>,
+    /// Frames per second.
+    pub rate: Option<f64>,
 }
 
 /// Metres in the unit of the Carnegie Mellon recordings: 1/0.45 inch.
@@ -87,6 +89,22 @@ const LEAST_JOINTS: usize = 10;
 /// Metres in a unit of a skeleton that is in the units of its file: what is told, else what its largest
 /// extent at rest says, with the warning `skeleton/unit`.
 pub fn length_unit(skeleton: &Skeleton, assumed: &Assumed, warnings: &mut Warnings) -> f64 {
+    length_unit_or(
+        skeleton,
+        assumed,
+        (UnitGuess::of(0.0).metres, UnitGuess::of(0.0).name),
+        warnings,
+    )
+}
+
+/// As [`length_unit`], with the unit and its name that are taken where the size does not tell: that which most
+/// programs write.
+pub fn length_unit_or(
+    skeleton: &Skeleton,
+    assumed: &Assumed,
+    usual: (f64, &'static str),
+    warnings: &mut Warnings,
+) -> f64 {
     if let Some(metres) = assumed.metres_per_unit {
         return metres;
     }
@@ -102,8 +120,8 @@ pub fn length_unit(skeleton: &Skeleton, assumed: &Assumed, warnings: &mut Warnin
     }
     let size = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
     let mut guess = UnitGuess::of(size);
-    if skeleton.bones.len() < LEAST_JOINTS {
-        guess = UnitGuess { fits: false, ..UnitGuess::of(0.0) };
+    if skeleton.bones.len() < LEAST_JOINTS || !guess.fits {
+        guess = UnitGuess { metres: usual.0, name: usual.1, fits: false };
     }
     let message = match guess.fits {
         true => format!(

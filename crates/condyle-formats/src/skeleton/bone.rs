@@ -3,9 +3,10 @@
 use crate::text::distinct;
 use condyle_diagnostics::{Diagnostic, Error, Read, Warnings};
 use condyle_math::{Affine, Vec3};
+use condyle_mesh::{Finish, Form};
 use condyle_model::component::{Along, Law, Scale};
 use condyle_model::model::Facing;
-use condyle_model::{CoordinateKind, Model, ModelBuilder, Range, SegmentId, Signal, UpAxis};
+use condyle_model::{CoordinateKind, Model, ModelBuilder, Range, SegmentId, Shape, Signal, UpAxis};
 
 /// What one number of a bone, or one orientation, does.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,6 +105,8 @@ pub struct Skeleton {
     pub facing: Facing,
     /// Its bones, each after its parent.
     pub bones: Vec<Bone>,
+    /// What bones look like: a bone's position in the list, and a surface in its own frame.
+    pub shapes: Vec<(usize, Form)>,
 }
 
 impl Skeleton {
@@ -181,6 +184,11 @@ impl Skeleton {
         let places = places.flat_map(|(bone, &id)| bone.ends.iter().map(move |end| (id, end.1)));
         for ((id, point), name) in places.zip(ends) {
             b.marker(name, Some(id), point);
+        }
+        for (number, (bone, form)) in self.shapes.iter().enumerate() {
+            let (Some(&segment), Some(name)) = (ids.get(*bone), names.get(*bone)) else { continue };
+            let (name, form) = (format!("{name}_shape{}", number + 1), form.clone());
+            b.shape(Shape { name, segment, form, finish: Finish::Bone, until: None });
         }
         let read = b.build_with_warnings()?;
         warnings.extend(read.warnings);

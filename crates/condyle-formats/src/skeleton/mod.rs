@@ -27,7 +27,7 @@ mod bake;
 mod bone;
 mod place;
 
-pub use assumed::{Assumed, UnitGuess, facing_of, length_unit, named_unit, up_of};
+pub use assumed::{Assumed, UnitGuess, facing_of, length_unit, length_unit_or, named_unit, up_of};
 pub use bake::{PlainBone, PlainBones};
 pub use bone::{Bone, Freedom, FreedomKind, Skeleton};
 pub use place::Place;

@@ -43,26 +43,71 @@ pub(crate) fn column_at(line: &str, offset: usize) -> usize {
     line.get(..offset).map_or(0, |before| before.chars().count() + 1)
 }
 
-/// The lines of a text, without a leading byte order mark and padding at its end.
-pub(crate) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> + Clone {
-    let text = text.trim_end_matches(PADDING);
-    let bom = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
-    let mut start = bom;
-    let mut number = 0;
-    std::iter::from_fn(move || {
-        let rest = text.get(start..).filter(|rest| !rest.is_empty())?;
-        let end = rest.find(['\n', '\r']).unwrap_or(rest.len());
+/// The lines of a text from some place on.
+#[derive(Debug, Clone)]
+pub(crate) struct Lines<'a> {
+    /// Without padding at its end.
+    text: &'a str,
+    start: usize,
+    number: usize,
+}
+
+impl<'a> Lines<'a> {
+    /// From a line of this text on.
+    pub(crate) fn from_line(text: &'a str, line: Line<'_>) -> Self {
+        let text = text.trim_end_matches(PADDING);
+        Self { text, start: line.start, number: line.number.saturating_sub(1) }
+    }
+
+    /// The text, and where in it the next line starts.
+    pub(crate) fn rest(&self) -> (&'a str, usize) {
+        (self.text, self.start)
+    }
+
+    /// Leaves out the next line, which ends here with its line end.
+    pub(crate) fn skip_to(&mut self, end: usize) {
+        self.start = end;
+        self.number += 1;
+    }
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = Line<'a>;
+
+    fn next(&mut self) -> Option<Line<'a>> {
+        let rest = self.text.get(self.start..).filter(|rest| !rest.is_empty())?;
+        let end = line_end(rest.as_bytes());
         let (body, tail) = rest.split_at(end);
-        number += 1;
-        let line = Line { number, start, text: body };
+        self.number += 1;
+        let line = Line { number: self.number, start: self.start, text: body };
         let ending = match tail.as_bytes() {
             [b'\r', b'\n', ..] => 2,
             [] => 0,
             _ => 1,
         };
-        start += end + ending;
+        self.start += end + ending;
         Some(line)
-    })
+    }
+}
+
+/// Where a line ends: 32 bytes at once.
+fn line_end(bytes: &[u8]) -> usize {
+    let is_end = |b: &u8| *b == b'\n' || *b == b'\r';
+    let (blocks, _) = bytes.as_chunks::<32>();
+    let whole = blocks
+        .iter()
+        .position(|block| block.iter().fold(false, |found, b| found | is_end(b)))
+        .unwrap_or(blocks.len());
+    let start = 32 * whole;
+    let rest = bytes.get(start..).unwrap_or_default();
+    start + rest.iter().position(is_end).unwrap_or(rest.len())
+}
+
+/// The lines of a text, without a leading byte order mark and padding at its end.
+pub(crate) fn lines(text: &str) -> Lines<'_> {
+    let text = text.trim_end_matches(PADDING);
+    let start = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
+    Lines { text, start, number: 0 }
 }
 
 /// The place of the last line that is not blank: where an incomplete file ends.

@@ -98,6 +98,12 @@ pub(crate) fn with_comma(text: &str) -> Option<f64> {
 
 /// A cell without the quotes around it.
 pub(crate) fn unquoted(text: &str) -> &str {
+    // Nearly all cells begin and end with a digit, a sign or a letter.
+    let plain = |b: Option<&u8>| b.is_some_and(|b| b.is_ascii_alphanumeric() || *b == b'-');
+    let bytes = text.as_bytes();
+    if plain(bytes.first()) && plain(bytes.last()) {
+        return text;
+    }
     let mut text = text.trim();
     while let Some(inner) = ['"', '\''].iter().find_map(|&q| text.strip_prefix(q)?.strip_suffix(q))
     {

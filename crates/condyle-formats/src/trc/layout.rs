@@ -1,7 +1,7 @@
 //! Which columns of the rows hold what: in some files rows stand a cell beside their names.
 
 use super::header::{Delimiter, Header};
-use crate::text::{Line, cell, with_comma};
+use crate::text::{Line, cell, unquoted, with_comma};
 use condyle_diagnostics::{Diagnostic, Warnings};
 
 /// How many rows are looked at.
@@ -37,14 +37,24 @@ impl Rows {
         let most = header.first.iter().max().map_or(4, |first| first + 3);
         for line in lines.filter(|line| !line.is_blank()).take(ROWS) {
             let delimiter = header.delimiter.unwrap_or_else(|| Delimiter::of(line.text));
-            let cells = delimiter.cells(line.text);
             let start = |text: &&str| match cell(text).or_else(|| with_comma(text)) {
                 Some(value) if value.is_finite() => Start::Number(value),
                 _ if text.is_empty() => Start::Blank,
                 _ => Start::Other,
             };
+            let first = most.min(12);
+            if delimiter == Delimiter::Tab && !line.text.contains(['"', '\'']) {
+                // The last cell with something in it is behind the last tab before it.
+                let filled = line.text.trim_end();
+                let width = filled.bytes().filter(|b| *b == b'\t').count() + 1;
+                let cells = line.text.split('\t').map(unquoted).take(first);
+                rows.starts.push(cells.map(|cell| start(&cell)).collect());
+                rows.widths.push(if filled.trim().is_empty() { 0 } else { width });
+                continue;
+            }
+            let cells = delimiter.cells(line.text);
             let width = cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1);
-            rows.starts.push(cells.iter().take(most.min(12)).map(start).collect());
+            rows.starts.push(cells.iter().take(first).map(start).collect());
             rows.widths.push(width);
         }
         rows

@@ -347,6 +347,18 @@ impl Model {
         (0..self.joint_sets.len() as u32).map(JointSetId)
     }
 
+    /// The model with these coordinates locked at their defaults.
+    #[must_use]
+    pub fn with_locked(&self, ids: impl IntoIterator<Item = CoordinateId>) -> Self {
+        let mut model = self.clone();
+        for id in ids {
+            if let Some(coordinate) = model.coordinates.get_mut(id.index()) {
+                coordinate.locked = true;
+            }
+        }
+        model
+    }
+
     /// The model without its loops.
     #[must_use]
     pub fn without_closures(&self) -> Self {

@@ -3,7 +3,8 @@
 //! With the unknowns x (the directions of the independent coordinates, n of them), a frame minimises
 //!
 //! ```text
-//! F(x) + P(x) + prior(x),   F = (Σₘ wₘ |eₘ|²) / (Σₘ wₘ) + Σ_c w_c (q_c - t_c)² + Σ_o w_o |ρ_o|² + w Σ_r c_r²
+//! F(x) + P(x) + prior(x),   F = (Σₘ wₘ |eₘ|²) / (Σₘ wₘ) + Σ_c w_c (q_c - t_c)² + Σ_o w_o |ρ_o|² + Σ_d w_d |d_d - v_d|²
+//!                               + Σ_p w_p |p - p*|² + w Σ_r c_r²
 //!                           P = Σ_p k_p (Σᵢ a_pᵢ qᵢ - r_p)²
 //! ```
 //!
@@ -25,20 +26,25 @@
 
 mod closure;
 mod coordinate;
+mod direction;
 mod marker;
 mod moments;
 mod orientation;
 mod pairs;
+mod place;
 mod posture;
 mod prior;
 #[cfg(test)]
 pub(crate) mod tests;
 
 pub use coordinate::{CoordinateTarget, Wanted};
+pub use direction::DirectionTarget;
 pub use marker::MarkerTarget;
 pub(crate) use marker::{Markers, Placed};
 pub(crate) use moments::Moments;
 pub use orientation::OrientationTarget;
+pub(crate) use orientation::rotation_of;
+pub use place::PlaceTarget;
 pub use posture::PostureTarget;
 pub use prior::PRIOR;
 
@@ -61,6 +67,10 @@ pub struct Targets {
     pub coordinates: Vec<CoordinateTarget>,
     /// Segments that should have an orientation.
     pub orientations: Vec<OrientationTarget>,
+    /// Lines between points that should point somewhere.
+    pub directions: Vec<DirectionTarget>,
+    /// Points that should be somewhere.
+    pub places: Vec<PlaceTarget>,
     /// Rest values with their stiffness.
     pub postures: Vec<PostureTarget>,
     /// Weight of squared loop errors; infinite (or `None`) closes loops exactly.
@@ -89,12 +99,14 @@ enum Part {
 }
 
 /// The kinds, in the order in which they are summed.
-fn kinds(tracker: &Tracker) -> [(Part, &dyn Target); 6] {
+fn kinds(tracker: &Tracker) -> [(Part, &dyn Target); 8] {
     let targets = &tracker.targets;
     [
         (Part::Mean, &tracker.markers),
         (Part::Fit, &targets.coordinates),
         (Part::Fit, &targets.orientations),
+        (Part::Fit, &targets.directions),
+        (Part::Fit, &targets.places),
         (Part::Posture, &targets.postures),
         (Part::Unreported, &prior::Prior),
         (Part::Fit, &closure::Closures),
@@ -167,6 +179,8 @@ impl Targets {
         }
         self.coordinates.retain(|t| positive(t.weight) && number(t.coordinate));
         self.orientations.retain(|t| positive(t.weight));
+        self.directions.retain(|t| positive(t.weight));
+        self.places.retain(|t| positive(t.weight));
         self.postures.retain(|t| {
             let known = t.terms.iter().all(|&(id, factor)| factor.is_finite() && number(id));
             positive(t.stiffness) && t.rest.is_finite() && known
@@ -182,7 +196,7 @@ impl Targets {
     /// Whether something but markers says where the model should be; a posture only says how it holds
     /// itself, and leaves a frame without markers as it was.
     pub(crate) fn stand_without_markers(&self) -> bool {
-        !(self.coordinates.is_empty() && self.orientations.is_empty())
+        !(self.coordinates.is_empty() && self.segments_held().next().is_none())
     }
 
     /// The segments that carry what is tracked.
@@ -193,8 +207,14 @@ impl Targets {
             Condition::Frames { at } => at.map(|(s, _)| s),
             Condition::Coupling { .. } => [None; 2],
         });
+        markers.chain(self.segments_held()).chain(closed.flatten()).collect()
+    }
+
+    /// The segments of orientations, lines and places.
+    fn segments_held(&self) -> impl Iterator<Item = SegmentId> + '_ {
+        let lines = self.directions.iter().flat_map(|t| [t.from.0, t.to.0]);
         let oriented = self.orientations.iter().map(|t| t.segment);
-        markers.chain(oriented).chain(closed.flatten()).collect()
+        oriented.chain(lines).chain(self.places.iter().map(|t| t.segment))
     }
 
     /// For each direction whether something is tracked that it moves. The rest of a single coordinate does
@@ -208,7 +228,7 @@ impl Targets {
         let mut moved = vec![!model.closures().is_empty(); model.tangent_len()];
         let markers = self.markers.iter().filter(|t| t.weight > 0.0);
         let segments = markers.filter_map(|t| model.markers()[t.marker].segment);
-        for segment in segments.chain(self.orientations.iter().map(|t| t.segment)) {
+        for segment in segments.chain(self.segments_held()) {
             program.segment_directions(segment).iter().for_each(|&(d, _)| moved[d as usize] = true);
         }
         let sums = self.postures.iter().filter(|t| t.terms.len() > 1);
@@ -224,9 +244,11 @@ impl Targets {
         moved
     }
 
-    /// Whether a segment should have an orientation in a frame.
+    /// Whether a segment, a line or a point is asked for in a frame.
     pub(crate) fn orient(&self, frame: usize) -> bool {
         self.orientations.iter().any(|t| matches!(t.wanted.get(frame), Some(Some(_))))
+            || self.directions.iter().any(|t| matches!(t.wanted.get(frame), Some(Some(_))))
+            || self.places.iter().any(|t| matches!(t.wanted.get(frame), Some(Some(_))))
     }
 
     /// Whether loops are closed by rows that must vanish.

@@ -8,7 +8,7 @@
 use super::Target;
 use crate::problem::Frame;
 use condyle_diagnostics::Diagnostic;
-use condyle_math::{Quat, Vec3};
+use condyle_math::{Mat3, Quat, Vec3};
 use condyle_model::{Mode, Model, Pose, Program, SegmentId};
 use condyle_motion::Orientations;
 use condyle_solve::least_squares::LocalModel;
@@ -16,7 +16,7 @@ use condyle_solve::least_squares::LocalModel;
 /// One segment that should have an orientation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OrientationTarget {
-    /// The segment; neither scaled nor sheared by what it hangs on.
+    /// The segment. Of one that is scaled the axes are brought to length 1; a shear is not taken account of.
     pub segment: SegmentId,
     /// Its weight, m² per rad²; positive and finite. 1e-4 makes 5.7° weigh as much as 1 mm RMS.
     pub weight: f64,
@@ -66,9 +66,21 @@ impl OrientationTarget {
     /// The rotation vector from the wanted orientation to the segment's, in the world.
     fn off(&self, frame: &Frame<'_>) -> Option<Vec3> {
         let wanted = (*self.wanted.get(frame.index)?)?;
-        let segment = Quat::from_mat3(frame.buffers.pose.segment(self.segment).linear);
+        let mut axes = frame.buffers.pose.segment(self.segment).linear;
+        if frame.tracker.part.deforms(self.segment) {
+            axes = rotation_of(axes);
+        }
+        let segment = Quat::from_mat3(axes);
         Some((segment * wanted.conjugate()).log())
     }
+}
+
+/// The axes of a scaled segment with length 1: the first as it points, the second perpendicular to it.
+pub(crate) fn rotation_of(linear: Mat3) -> Mat3 {
+    let unit = |v: Vec3| v * (1.0 / v.norm().max(1e-300));
+    let x = unit(linear.x);
+    let y = unit(linear.y - x * x.dot(linear.y));
+    Mat3::from_columns(x, y, x.cross(y))
 }
 
 impl Target for Vec<OrientationTarget> {

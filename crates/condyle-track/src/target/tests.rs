@@ -92,7 +92,24 @@ fn at_rest(seed: u64) -> (Tracker, Vec<f64>, Vec<Option<[f64; 3]>>) {
         wanted: vec![Some(Quat::from_mat3(pose.segment(id).linear))],
     };
     let rigid = model.segment_ids().filter(|&id| !program.deforms(id));
+    // Lines across the tree, the stretched segment among them, and a point of each segment.
+    let all: Vec<SegmentId> = model.segment_ids().collect();
+    let ends = all.iter().zip(all.iter().rev()).filter(|(a, b)| a != b);
+    let line = |(&a, &b): (&SegmentId, &SegmentId)| {
+        let ends = [(a, Vec3::X), (b, Vec3::Z)];
+        let [from, to] = ends.map(|(id, point)| pose.segment(id) * point);
+        let wanted = vec![Some((to - from).normalized())];
+        DirectionTarget { from: ends[0], to: ends[1], weight: 0.9, wanted }
+    };
+    let place = |&segment: &SegmentId| PlaceTarget {
+        segment,
+        point: Vec3::Y,
+        weight: 1.3,
+        wanted: vec![Some(pose.segment(segment) * Vec3::Y)],
+    };
     let targets = Targets {
+        directions: ends.map(line).collect(),
+        places: all.iter().map(place).collect(),
         marker_factors: vec![],
         orientations: rigid.map(oriented).collect(),
         coordinates: ids.iter().copied().map(wanted).collect(),

@@ -72,7 +72,7 @@ impl View {
 
     /// The camera of this view of a model.
     pub(super) fn camera(self, model: &Model) -> Camera {
-        Camera::looking([1.0, 0.0, 0.0], up(model), self.azimuth, self.elevation)
+        Camera::looking(front(model), up(model), self.azimuth, self.elevation)
     }
 
     /// How a view is called under a picture.
@@ -85,10 +85,43 @@ impl View {
     }
 }
 
+/// Where a model looks at rest. With z up, what looks along z when y is up looks against y.
+fn front(model: &Model) -> [f64; 3] {
+    let [x, y, z] = model.facing().direction().to_array();
+    match model.up() {
+        UpAxis::Y => [x, y, z],
+        UpAxis::Z => [x, -z, y],
+    }
+}
+
 /// The direction up in a model's world.
 pub(super) fn up(model: &Model) -> [f64; 3] {
     match model.up() {
         UpAxis::Y => [0.0, 1.0, 0.0],
         UpAxis::Z => [0.0, 0.0, 1.0],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use condyle_model::ModelBuilder;
+    use condyle_model::model::Facing;
+
+    #[test]
+    fn the_front_is_where_a_model_looks() {
+        let front = |facing, up| {
+            let mut builder = ModelBuilder::new("figure");
+            builder.segment("body", None);
+            builder.facing(facing);
+            builder.up(up);
+            let model = builder.build().unwrap();
+            View::named("front").unwrap().camera(&model).toward
+        };
+        assert_eq!(front(Facing::PlusX, UpAxis::Y), [1.0, 0.0, 0.0]);
+        assert_eq!(front(Facing::PlusZ, UpAxis::Y), [0.0, 0.0, 1.0]);
+        assert_eq!(front(Facing::MinusZ, UpAxis::Y), [0.0, 0.0, -1.0]);
+        // Blender's figures have z up and look against y.
+        assert_eq!(front(Facing::PlusZ, UpAxis::Z), [0.0, -1.0, 0.0]);
     }
 }

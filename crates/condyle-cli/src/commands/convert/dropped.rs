@@ -24,14 +24,14 @@ pub(super) fn tell(trial: &Trial, target: &Format) {
         ));
     }
     let counts = [
-        (trial.analog.channels.len(), "analog channels"),
-        (trial.events().len(), "events"),
-        (trial.platforms().len(), "force platforms"),
+        (trial.analog.channels.len(), "analog channel"),
+        (trial.events().len(), "event"),
+        (trial.platforms().len(), "force platform"),
     ];
     let left: Vec<String> = counts
         .iter()
         .filter(|(count, _)| *count > 0)
-        .map(|(count, name)| format!("{count} {name}"))
+        .map(|(count, name)| format!("{count} {name}{}", if *count == 1 { "" } else { "s" }))
         .collect();
     if !left.is_empty() {
         let help = "a C3D holds them; --analog writes the channels as a table";

@@ -1,0 +1,329 @@
+//! What the target is asked for, frame by frame, and its solution.
+
+use super::body::{Anchor, Part, Side};
+use super::feet::Feet;
+use super::sampled::{Sampled, middle, trunk};
+use super::stance::Stance;
+use super::{Humanoid, Options, Posed, held};
+use crate::answer::FrameAnswer;
+use crate::target::rotation_of;
+use crate::{
+    DirectionTarget, FrameStatus, OrientationTarget, PlaceTarget, PostureTarget, Rules, Scratch,
+    Targets, Tracker,
+};
+use condyle_math::{Mat3, Quat, Vec3};
+use condyle_model::SegmentId;
+use condyle_motion::Motion;
+use std::collections::BTreeMap;
+
+/// Weights, m² per rad² and per m²; lines have 1.
+mod weight {
+    /// A limb or trunk that points where it should.
+    pub(super) const LINE: f64 = 1.0;
+    /// A hand, finger or toe that does.
+    pub(super) const SMALL: f64 = 0.1;
+    /// The middle between the hips: 10 cm off weigh as much as 0.1 rad of ten lines.
+    pub(super) const MIDDLE: f64 = 10.0;
+    /// Feet that stand; nearly exact.
+    pub(super) const FOOT: f64 = 1000.0;
+}
+
+/// How much the orientation of a part weighs. That of limbs is weak: their lines are asked for, and how they
+/// are turned about these follows from the joints beyond, where these are bent.
+fn turn_weight(part: Part) -> f64 {
+    match part {
+        Part::Pelvis => 0.5,
+        Part::Chest | Part::Head => 0.3,
+        Part::Foot(_) => 0.2,
+        Part::Hand(_) => 0.1,
+        Part::Clavicle(_) => 0.03,
+        Part::Neck | Part::UpperArm(_) | Part::Thigh(_) => 0.02,
+        Part::Spine(_) => 0.02,
+        Part::Shank(_) | Part::Toes(_) => 0.01,
+        _ => 0.003,
+    }
+}
+
+/// Frames on the way from rest to the first.
+const LEAD: usize = 12;
+
+/// A line that is asked for, and by which the result is measured.
+pub(super) struct Line {
+    pub name: String,
+    pub from: Anchor,
+    pub to: Anchor,
+    pub weight: f64,
+    pub wanted: Vec<Vec3>,
+}
+
+/// An orientation that is asked for.
+pub(super) struct Turn {
+    pub part: Part,
+    pub segment: SegmentId,
+    pub wanted: Vec<Quat>,
+}
+
+/// All that is asked for.
+pub(super) struct Plan {
+    pub lines: Vec<Line>,
+    pub turns: Vec<Turn>,
+    pub middle: Option<(Anchor, Vec<Vec3>)>,
+    /// Parts that only one of the two has.
+    pub unmatched: [Vec<Part>; 2],
+}
+
+impl Plan {
+    pub(super) fn new(
+        source: Humanoid<'_>,
+        target: Humanoid<'_>,
+        from: &Stance,
+        to: &Stance,
+        sampled: &Sampled,
+    ) -> Self {
+        let mut plan =
+            Self { lines: vec![], turns: vec![], middle: None, unmatched: [vec![], vec![]] };
+        let spine = interpolated(from, to, sampled);
+        let mut wanted: BTreeMap<Part, Vec<Mat3>> = spine;
+        for (part, anchor) in target.body.parts() {
+            if let Some(turned) = sampled.turned.get(&part) {
+                wanted.entry(part).or_insert_with(|| turned.clone());
+            }
+            let (Some(frames), Some(own)) = (wanted.get(&part), to.frames.get(&part)) else {
+                continue;
+            };
+            let back = own.transpose();
+            let turns: Vec<Quat> =
+                frames.iter().map(|frame| Quat::from_mat3(*frame * back)).collect();
+            if let Some(end) = target.body.end(part) {
+                let start = target.body.start(part).unwrap_or(anchor);
+                plan.line(target, part, [start, end], sampled, &turns);
+            }
+            plan.turns.push(Turn { part, segment: anchor.segment, wanted: turns });
+        }
+        let necks = [source, target].map(|figure| figure.body.get(Part::Neck).is_some());
+        if let (Some((low, high)), Some(wanted)) =
+            (trunk(target, necks[0] && necks[1]), sampled.trunk.clone())
+        {
+            let line =
+                Line { name: "trunk".into(), from: low, to: high, weight: weight::LINE, wanted };
+            if low.segment != high.segment {
+                plan.lines.push(line);
+            }
+        }
+        if let Some(anchor) = middle(target) {
+            let (up, size) = (sampled.up, sampled.size);
+            let place = |p: &Vec3| (*p - up * sampled.ankle) * size + up * to.ankle;
+            plan.middle = Some((anchor, sampled.middle.iter().map(place).collect()));
+        }
+        let only = |a: Humanoid<'_>, b: Humanoid<'_>| {
+            let own = a.body.parts().map(|(part, _)| part);
+            let spine = |part: &Part| matches!(part, Part::Spine(_));
+            own.filter(|part| b.body.get(*part).is_none() && !part.is_tip() && !spine(part))
+                .collect()
+        };
+        plan.unmatched = [only(source, target), only(target, source)];
+        plan
+    }
+
+    /// The line of a limb: where the source's points; a foot's where that of rest is turned to.
+    fn line(
+        &mut self,
+        target: Humanoid<'_>,
+        part: Part,
+        [from, to]: [Anchor; 2],
+        sampled: &Sampled,
+        turns: &[Quat],
+    ) {
+        let weight = match part {
+            Part::UpperArm(_)
+            | Part::Forearm(_)
+            | Part::Thigh(_)
+            | Part::Shank(_)
+            | Part::Foot(_) => weight::LINE,
+            _ => weight::SMALL,
+        };
+        let at_rest = || {
+            let mut posed = Posed::new(target.model);
+            let pose = posed.at(&target.model.defaults()).ok()?;
+            let along = to.placed(pose) - from.placed(pose);
+            let axes = rotation_of(pose.segment(target.body.get(part)?.segment).linear);
+            Some(axes.transpose() * along * (1.0 / along.norm().max(1e-12)))
+        };
+        let wanted = match (part, sampled.lines.get(&part)) {
+            (Part::Foot(_) | Part::Toes(_), _) => match at_rest() {
+                Some(own) => turns.iter().map(|turn| turn.to_mat3() * own).collect(),
+                None => return,
+            },
+            (_, Some(lines)) => lines.clone(),
+            (_, None) => return,
+        };
+        self.lines.push(Line { name: part.name(), from, to, weight, wanted });
+    }
+
+    /// The target's motion, from the start's frames or from rest.
+    pub(super) fn solve(
+        &self,
+        target: Humanoid<'_>,
+        options: Options,
+        feet: Option<&Feet>,
+        start: Option<&Motion>,
+        times: &[f64],
+        progress: &mut dyn FnMut(),
+    ) -> Motion {
+        let lead = if start.is_some() { 0 } else { LEAD };
+        let targets = self.targets(target, lead, feet);
+        let rules = Rules { limits: options.limits, tolerance: 1e-6 };
+        let tracker = Tracker::new(target.model.with_locked(held::held(target)), targets, rules);
+        let mut scratch = Scratch::new(&tracker);
+        let mut answer = FrameAnswer::start(&tracker.defaults);
+        let mut frames = Vec::with_capacity(times.len());
+        for frame in 0..lead + times.len() {
+            if let Some(own) = start.and_then(|start| start.frames.get(frame)) {
+                answer.coordinates.clone_from(own);
+            }
+            let before = answer.minimised();
+            tracker.descend(&mut scratch, &[], frame, &mut answer);
+            if frame + 1 == lead && tracker.unwind(&mut answer.coordinates) {
+                tracker.descend(&mut scratch, &[], frame, &mut answer);
+            }
+            if frame < lead {
+                continue;
+            }
+            let lost = matches!(answer.status, FrameStatus::Uncertain | FrameStatus::Infeasible);
+            if lost && answer.minimised() > 4.0 * before + 0.01 {
+                let again = tracker.solve_anew(&mut scratch, &[], frame, 2);
+                if tracker.replaces(&again, &answer) {
+                    answer = again;
+                }
+            }
+            frames.push(answer.coordinates.clone());
+            progress();
+        }
+        Motion { times: times.to_vec(), frames }
+    }
+
+    fn targets(&self, target: Humanoid<'_>, lead: usize, feet: Option<&Feet>) -> Targets {
+        let mut posed = Posed::new(target.model);
+        let rest = posed.at(&target.model.defaults()).ok();
+        let share = |frame: usize| (frame + 1) as f64 / (lead + 1) as f64;
+        let mut targets = Targets::default();
+        for turn in &self.turns {
+            let Some(&first) = turn.wanted.first() else { continue };
+            let mut wanted: Vec<Option<Quat>> = vec![None; lead];
+            if let Some(pose) = rest {
+                let own = Quat::from_mat3(rotation_of(pose.segment(turn.segment).linear));
+                for (frame, place) in wanted.iter_mut().enumerate() {
+                    *place = Some(between(own, first, share(frame)));
+                }
+            }
+            wanted.extend(turn.wanted.iter().map(|q| Some(*q)));
+            let weight = turn_weight(turn.part);
+            targets.orientations.push(OrientationTarget { segment: turn.segment, weight, wanted });
+        }
+        for line in &self.lines {
+            let mut wanted: Vec<Option<Vec3>> = vec![None; lead];
+            wanted.extend(line.wanted.iter().map(|d| d.is_finite().then_some(*d)));
+            let end = |anchor: Anchor| (anchor.segment, anchor.point);
+            targets.directions.push(DirectionTarget {
+                from: end(line.from),
+                to: end(line.to),
+                weight: line.weight,
+                wanted,
+            });
+        }
+        if let Some((anchor, places)) = &self.middle {
+            let own = rest.map(|pose| anchor.placed(pose)).zip(places.first());
+            let way = |frame: usize| own.map(|(a, b)| a + (*b - a) * share(frame));
+            let mut wanted: Vec<Option<Vec3>> = (0..lead).map(way).collect();
+            wanted.extend(places.iter().map(|p| Some(*p)));
+            targets.places.push(PlaceTarget {
+                segment: anchor.segment,
+                point: anchor.point,
+                weight: weight::MIDDLE,
+                wanted,
+            });
+        }
+        for (anchor, places) in feet.iter().flat_map(|feet| &feet.places) {
+            targets.places.push(PlaceTarget {
+                segment: anchor.segment,
+                point: anchor.point,
+                weight: weight::FOOT,
+                wanted: places.clone(),
+            });
+        }
+        targets.postures = target
+            .model
+            .postures()
+            .iter()
+            .map(|term| PostureTarget {
+                terms: term.sum.clone(),
+                rest: term.rest,
+                stiffness: term.stiffness,
+            })
+            .collect();
+        targets
+    }
+}
+
+/// A rotation on the shortest way from one to another.
+fn between(from: Quat, to: Quat, share: f64) -> Quat {
+    (from * Quat::exp((from.conjugate() * to).log() * share)).normalized()
+}
+
+/// How the parts of the target's spine below the chest should be turned: as the source's is at the same share
+/// of the way from pelvis to chest.
+fn interpolated(from: &Stance, to: &Stance, sampled: &Sampled) -> BTreeMap<Part, Vec<Mat3>> {
+    let (Some(own), Some(wanted)) = (shares(from), shares(to)) else { return BTreeMap::new() };
+    let mut all = BTreeMap::new();
+    for (part, share) in wanted {
+        if !matches!(part, Part::Spine(_)) {
+            continue;
+        }
+        let above = own.iter().position(|(_, at)| *at >= share).unwrap_or(own.len() - 1);
+        let below = above.saturating_sub(1);
+        let ((lower, a), (upper, b)) = (own[below], own[above]);
+        let part_way = if b > a { ((share - a) / (b - a)).clamp(0.0, 1.0) } else { 1.0 };
+        let (Some(low), Some(high)) = (sampled.turned.get(&lower), sampled.turned.get(&upper))
+        else {
+            continue;
+        };
+        let frames = low.iter().zip(high).map(|(low, high)| {
+            let [low, high] = [low, high].map(|m| Quat::from_mat3(*m));
+            between(low, high, part_way).to_mat3()
+        });
+        all.insert(part, frames.collect());
+    }
+    all
+}
+
+/// For pelvis, spine and chest the share of the way from the pelvis to the chest.
+fn shares(stance: &Stance) -> Option<Vec<(Part, f64)>> {
+    let spine = |part: &Part| matches!(part, Part::Pelvis | Part::Spine(_) | Part::Chest);
+    let mut along = 0.0;
+    let mut before: Option<Vec3> = None;
+    let mut shares = vec![];
+    for (part, point) in stance.points.iter().filter(|(part, _)| spine(part)) {
+        along += before.map_or(0.0, |before| (*point - before).norm());
+        before = Some(*point);
+        shares.push((*part, along));
+    }
+    let whole = (along > 1e-9).then_some(along)?;
+    let ends = [Part::Pelvis, Part::Chest].iter().all(|end| stance.points.contains_key(end));
+    shares.iter_mut().for_each(|(_, share)| *share /= whole);
+    ends.then_some(shares)
+}
+
+/// The sides whose feet are asked for.
+pub(super) fn foot_points(target: Humanoid<'_>, sampled: &Sampled) -> Vec<(Part, Part, Anchor)> {
+    let mut points = vec![];
+    for side in Side::BOTH {
+        let foot = Part::Foot(side);
+        if let Some(anchor) = target.body.start(foot) {
+            points.push((foot, foot, anchor));
+            if let (Some(ball), Some(end)) = (sampled.ball(side), target.body.end(foot)) {
+                points.push((foot, ball, end));
+            }
+        }
+    }
+    points
+}
