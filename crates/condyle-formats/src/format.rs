@@ -12,6 +12,8 @@ use crate::opensim::{self, setup};
 use crate::skeleton::Assumed;
 #[cfg(feature = "document")]
 use crate::text::utf8;
+#[cfg(feature = "urdf")]
+use crate::urdf;
 use crate::{Animation, Error, Read, Recording, Table, asf, bvh, c3d, csv, skel, sto, trc};
 #[cfg(feature = "poses")]
 use crate::{
@@ -146,6 +148,12 @@ pub enum Id {
     Document,
     /// OpenSim's models and setups.
     OpenSim,
+    /// Robot descriptions.
+    Urdf,
+    /// Models of MuJoCo.
+    Mjcf,
+    /// Scenes of Universal Scene Description.
+    Usda,
     /// Marker recordings.
     Trc,
     /// Marker recordings with analog channels and events.
@@ -242,6 +250,39 @@ pub const FORMATS: &[Format] = &[
                 opensim::Holding::Tasks(tasks) => Content::Tasks(tasks),
             }))
         },
+    },
+    #[cfg(feature = "urdf")]
+    Format {
+        id: Id::Urdf,
+        name: "urdf",
+        title: "robot descriptions of ROS",
+        endings: &["urdf"],
+        reads: &[ContentKind::Model],
+        writes: &[ContentKind::Model],
+        sniff: |bytes| starts(bytes, 4096).contains("<robot"),
+        read: |bytes, _| urdf::from_bytes(bytes).map(|read| read.map(Content::Model)),
+    },
+    #[cfg(feature = "mjcf")]
+    Format {
+        id: Id::Mjcf,
+        name: "mjcf",
+        title: "models of MuJoCo",
+        endings: &["mjcf"],
+        reads: &[],
+        writes: &[ContentKind::Model],
+        sniff: |bytes| starts(bytes, 4096).contains("<mujoco"),
+        read: |_, _| Err(Error::new("mjcf/not-read", "models of MuJoCo are written, not read")),
+    },
+    #[cfg(feature = "usd")]
+    Format {
+        id: Id::Usda,
+        name: "usda",
+        title: "UsdSkel scenes",
+        endings: &["usda"],
+        reads: &[],
+        writes: &[ContentKind::Scene],
+        sniff: |bytes| bytes.starts_with(b"#usda"),
+        read: |_, _| Err(Error::new("usd/not-read", "scenes are written, not read")),
     },
     Format {
         id: Id::Trc,
@@ -527,6 +568,7 @@ mod tests {
                 "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\n1\n".into(),
             ),
             (Id::Document, "# x\ncondyle = 1\nkind = \"model\"\n[segment.a]\n".to_owned()),
+            (Id::Urdf, "<robot name=\"r\"><link name=\"a\"/></robot>".to_owned()),
             (
                 Id::OpenSim,
                 "<?xml version=\"1.0\"?>\n<OpenSimDocument><Model/></OpenSimDocument>".into(),

@@ -21,6 +21,7 @@ use condyle_motion::Recording;
 ///     times: vec![0.0],
 ///     positions: vec![[0.125, 0.9, -0.12].into()],
 ///     units: LengthUnit::Millimetre,
+///     ..Recording::default()
 /// };
 /// let text = trc::write(&recording, "static.trc")?;
 /// assert_eq!(text.lines().last(), Some("1\t0\t125\t900\t-120"));

@@ -18,7 +18,9 @@ mod coupling;
 mod function;
 mod joint;
 
-use crate::plain::{Choice, Piece, Rule, Source, Tree, Value, Written, build, fit, pieces};
+use crate::plain::{
+    Choice, Piece, Rule, Source, Tree, Value, Written, build, escaped, fit, pieces,
+};
 use condyle_diagnostics::{Diagnostic, Read, listed};
 use condyle_math::{Affine, EulerOrder, Vec3};
 use condyle_model::model::Condition;
@@ -51,7 +53,15 @@ pub fn written(model: &Model) -> Written {
     let mut file = File::new(model, tree, remarks);
     let text = file.text();
     let File { tree, coordinates, bodies, remarks, .. } = file;
-    Written { text, joints: coordinates.into_named(), balls: vec![], tree, bodies, remarks }
+    Written {
+        text,
+        joints: coordinates.into_named(),
+        balls: vec![],
+        base: Affine::IDENTITY,
+        tree,
+        bodies,
+        remarks,
+    }
 }
 
 /// One joint of the file with the body that it moves.
@@ -293,20 +303,4 @@ fn offset(out: &mut String, name: &str, base: &str, frame: &Affine) {
         numbers(frame.translation.to_array()),
         numbers(EulerOrder::XYZ.from_mat3(frame.linear)),
     );
-}
-
-/// Text that may stand in an attribute.
-pub(crate) fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            c if c.is_control() => out.push(' '),
-            c => out.push(c),
-        }
-    }
-    out
 }
