@@ -20,6 +20,8 @@ use std::collections::BTreeMap;
 mod weight {
     /// A limb or trunk that points where it should.
     pub(super) const LINE: f64 = 1.0;
+    /// A collar bone that turns as the source's does, from where it rests.
+    pub(super) const GIRDLE: f64 = 0.3;
     /// A hand, finger or toe that does.
     pub(super) const SMALL: f64 = 0.1;
     /// The middle between the hips: 10 cm off weigh as much as 0.1 rad of ten lines.
@@ -36,7 +38,7 @@ fn turn_weight(part: Part) -> f64 {
         Part::Chest | Part::Head => 0.3,
         Part::Foot(_) => 0.2,
         Part::Hand(_) => 0.1,
-        Part::Clavicle(_) => 0.03,
+        Part::Clavicle(_) => 0.01,
         Part::Neck | Part::UpperArm(_) | Part::Thigh(_) => 0.02,
         Part::Spine(_) => 0.02,
         Part::Shank(_) | Part::Toes(_) => 0.01,
@@ -140,6 +142,7 @@ impl Plan {
             | Part::Thigh(_)
             | Part::Shank(_)
             | Part::Foot(_) => weight::LINE,
+            Part::Clavicle(_) => weight::GIRDLE,
             _ => weight::SMALL,
         };
         let at_rest = || {
@@ -150,7 +153,7 @@ impl Plan {
             Some(axes.transpose() * along * (1.0 / along.norm().max(1e-12)))
         };
         let wanted = match (part, sampled.lines.get(&part)) {
-            (Part::Foot(_) | Part::Toes(_), _) => match at_rest() {
+            (Part::Foot(_) | Part::Toes(_) | Part::Clavicle(_), _) => match at_rest() {
                 Some(own) => turns.iter().map(|turn| turn.to_mat3() * own).collect(),
                 None => return,
             },
