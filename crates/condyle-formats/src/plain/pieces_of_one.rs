@@ -68,7 +68,9 @@ impl Joints {
     /// The joints of a tree, coupled by polynomials up to this order.
     pub fn new(model: &Model, tree: &Tree, order: usize) -> Self {
         let mut bodies = Names::default();
-        let world = bodies.take("world");
+        // MuJoCo's own body has the name `world`: nothing else may have it.
+        bodies.take("world");
+        let world = bodies.take("base_of_model");
         let bodies_of: Vec<String> =
             tree.links.iter().map(|link| bodies.take(&link.name)).collect();
         let mut this = Self {
