@@ -122,7 +122,7 @@ impl<'m> File<'m> {
         let mut out = String::from(
             "<?xml version=\"1.0\" encoding=\"UTF-8\" ?>\n<OpenSimDocument Version=\"40000\">\n",
         );
-        let name = escaped(&self.tree.name);
+        let name = named(&self.tree.name);
         let _ = writeln!(out, "<Model name=\"{name}\">");
         out.push_str(
             "<credits>written by condyle; masses are not known: 1 kg for each segment</credits>\n",
@@ -158,7 +158,7 @@ impl<'m> File<'m> {
                 out,
                 "<Marker name=\"{}\"><socket_parent_frame>{frame}</socket_parent_frame><location>{}</location>\
                  <fixed>true</fixed></Marker>",
-                escaped(&marker.name),
+                named(&marker.name),
                 numbers(marker.point.to_array())
             );
         }
@@ -180,7 +180,7 @@ impl<'m> File<'m> {
     fn closures(&mut self, out: &mut String) {
         let mut lost = vec![];
         for closure in self.model.closures() {
-            let name = escaped(&closure.name);
+            let name = named(&closure.name);
             match &closure.condition {
                 Condition::Points { at } => {
                     let text = self.points(at);
@@ -303,4 +303,10 @@ fn offset(out: &mut String, name: &str, base: &str, frame: &Affine) {
         numbers(frame.translation.to_array()),
         numbers(EulerOrder::XYZ.from_mat3(frame.linear)),
     );
+}
+
+/// A name without the characters that OpenSim refuses in names: its separators of paths, and blanks.
+fn named(name: &str) -> String {
+    let refused = |c: char| c.is_whitespace() || matches!(c, '\\' | '/' | '*' | '+');
+    escaped(&name.chars().map(|c| if refused(c) { '_' } else { c }).collect::<String>())
 }
