@@ -22,7 +22,7 @@
 //! Such files state neither unit nor axes. The heads are above the feet, so the axis from the ankles to the
 //! shoulders is up (`keypoints/up`); a leg from hip over knee to ankle is 0.4 to 1.3 m long, which tells metres
 //! from centimetres and millimetres, and what is none of them is brought to a leg of 0.84 m
-//! (`keypoints/unit`). [`Assumed`](crate::skeleton::Assumed) overrules both.
+//! (`keypoints/unit`). [`Assumed`] overrules both.
 
 #[cfg(feature = "poses")]
 mod json;

@@ -31,10 +31,10 @@ pub fn write(recording: &Recording, name: &str) -> Result<String, Error> {
     write_with_remarks(recording, name, &[])
 }
 
-/// As [`write`], with remarks in cells of the first line after the name of the file, where readers do not look.
+/// As [`write()`], with remarks in cells of the first line after the name of the file, where readers do not look.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn write_with_remarks(
     recording: &Recording,
     name: &str,
