@@ -259,7 +259,7 @@ fn mean(rotations: &[Quat], weights: &[f64]) -> Quat {
         for (q, weight) in rotations.iter().zip(weights) {
             let to = (mean.conjugate() * *q).log();
             let weight = weight * if to.norm() > far { far / to.norm() } else { 1.0 };
-            sum = sum + to * weight;
+            sum += to * weight;
             total += weight;
         }
         let step = sum * (1.0 / total);

@@ -177,7 +177,7 @@ impl Field {
     /// `field/settings` for settings that make no sense.
     pub fn learn(cloud: Cloud, settings: &Settings) -> Result<Self, Error> {
         let [least, most] = settings.radius;
-        if !(24..=256).contains(&settings.nodes) || !(least > 0.0 && least <= most && most < PI) {
+        if !((24..=256).contains(&settings.nodes) && least > 0.0 && least <= most && most < PI) {
             let message = "nodes are not 24 to 256, or radii not rising between 0 and half a turn";
             return Err(Error::new("field/settings", message));
         }

@@ -100,10 +100,10 @@ impl<'a> Nodes<'a> {
                 }
             }
             for (node, q) in &self.used {
-                changed += found.from_neighbours(balls, *node as usize, q, &behind, 1);
+                changed += found.taken_from_neighbours(balls, *node as usize, q, &behind, 1);
             }
             for (node, q) in self.used.iter().rev() {
-                changed += found.from_neighbours(balls, *node as usize, q, &behind, -1);
+                changed += found.taken_from_neighbours(balls, *node as usize, q, &behind, -1);
             }
             if changed * 1000 < self.used.len() {
                 break;
@@ -130,7 +130,7 @@ impl Nearest {
     }
 
     #[inline(always)]
-    fn from_neighbours(
+    fn taken_from_neighbours(
         &mut self,
         balls: &[Ball],
         node: usize,
