@@ -16,7 +16,7 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-ENDINGS = {".osim", ".xml", ".toml", ".trc", ".mot", ".sto", ".csv", ".json"}
+ENDINGS = {".osim", ".xml", ".toml", ".trc", ".mot", ".sto", ".csv", ".json", ".bvh", ".asf", ".skel"}
 LARGEST = 400_000
 SECONDS = 20
 WORDS = [b"nan", b"inf", b"-1e308", b"1e-320", b"0", b"-1", b"99999999999999999999", b"", b"\t", b"\n", b"\0",
@@ -72,6 +72,8 @@ def commands(path: Path, models: list[Path], rng: random.Random) -> list[str]:
             return rng.choice([["info", file], ["track", model, file, "-o", os.devnull, "--time", "0:0.05"],
                                ["track", model, file, "-o", os.devnull, "--time", "0:0.02", "--robust"],
                                ["scale", model, "--static", file, "-o", os.devnull]])
+        case ".bvh" | ".asf" | ".skel":
+            return rng.choice([["info", file], ["check", file], ["fk", file], ["convert", file, "-", "--to", "bvh"]])
         case ".xml":
             return ["info", file]
         case ".json":

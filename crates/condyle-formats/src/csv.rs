@@ -187,7 +187,7 @@ fn quoted(name: &str) -> String {
 }
 
 /// The separator that occurs most outside quotes in the line of names.
-fn delimiter_of(names: &str) -> char {
+pub(crate) fn delimiter_of(names: &str) -> char {
     let mut counts = [(',', 0), (';', 0), ('\t', 0)];
     let mut inside = false;
     for c in names.chars() {
@@ -201,7 +201,7 @@ fn delimiter_of(names: &str) -> char {
 }
 
 /// The cells of a line, unquoted; those without quotes are trimmed.
-fn cells(line: Line<'_>, delimiter: char) -> Result<Vec<String>, Error> {
+pub(crate) fn cells(line: Line<'_>, delimiter: char) -> Result<Vec<String>, Error> {
     let mut cells = Vec::new();
     let mut rest = line.text;
     loop {

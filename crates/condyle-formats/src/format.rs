@@ -12,10 +12,12 @@ use crate::opensim::{self, setup};
 use crate::skeleton::Assumed;
 #[cfg(feature = "document")]
 use crate::text::utf8;
+#[cfg(feature = "urdf")]
+use crate::urdf;
 use crate::{Animation, Error, Read, Recording, Table, asf, bvh, c3d, csv, skel, sto, trc};
 #[cfg(feature = "poses")]
 use crate::{
-    exchange,
+    exchange, keypoints,
     poses::{self, Poses},
 };
 #[cfg(feature = "document")]
@@ -146,6 +148,12 @@ pub enum Id {
     Document,
     /// OpenSim's models and setups.
     OpenSim,
+    /// Robot descriptions.
+    Urdf,
+    /// Models of MuJoCo.
+    Mjcf,
+    /// Scenes of Universal Scene Description.
+    Usda,
     /// Marker recordings.
     Trc,
     /// Marker recordings with analog channels and events.
@@ -158,6 +166,8 @@ pub enum Id {
     Csv,
     /// Poses and resolved models in JSON.
     Poses,
+    /// 3D keypoints of pose estimators.
+    Keypoints,
     /// Binary glTF.
     Glb,
     /// glTF in JSON, and the files of VRM, which are GLB.
@@ -243,6 +253,39 @@ pub const FORMATS: &[Format] = &[
             }))
         },
     },
+    #[cfg(feature = "urdf")]
+    Format {
+        id: Id::Urdf,
+        name: "urdf",
+        title: "robot descriptions of ROS",
+        endings: &["urdf"],
+        reads: &[ContentKind::Model],
+        writes: &[ContentKind::Model],
+        sniff: |bytes| starts(bytes, 4096).contains("<robot"),
+        read: |bytes, _| urdf::from_bytes(bytes).map(|read| read.map(Content::Model)),
+    },
+    #[cfg(feature = "mjcf")]
+    Format {
+        id: Id::Mjcf,
+        name: "mjcf",
+        title: "models of MuJoCo",
+        endings: &["mjcf"],
+        reads: &[],
+        writes: &[ContentKind::Model],
+        sniff: |bytes| starts(bytes, 4096).contains("<mujoco"),
+        read: |_, _| Err(Error::new("mjcf/not-read", "models of MuJoCo are written, not read")),
+    },
+    #[cfg(feature = "usd")]
+    Format {
+        id: Id::Usda,
+        name: "usda",
+        title: "UsdSkel scenes",
+        endings: &["usda"],
+        reads: &[],
+        writes: &[ContentKind::Scene],
+        sniff: |bytes| bytes.starts_with(b"#usda"),
+        read: |_, _| Err(Error::new("usd/not-read", "scenes are written, not read")),
+    },
     Format {
         id: Id::Trc,
         name: "trc",
@@ -285,12 +328,26 @@ pub const FORMATS: &[Format] = &[
         sniff: |_| false,
         read: |bytes, _| sto::from_bytes(bytes).map(|read| read.map(Content::Table)),
     },
+    #[cfg(feature = "poses")]
+    Format {
+        id: Id::Keypoints,
+        name: "jsonl",
+        title: "3D keypoints of pose estimators, a frame a line; also as .json and .csv",
+        endings: &["jsonl", "ndjson"],
+        reads: &[ContentKind::Recording],
+        writes: &[],
+        sniff: |bytes| match starts(bytes, 64).starts_with(['{', '[']) {
+            true => !exchange::is_model(bytes) && keypoints::is_json(bytes),
+            false => keypoints::is_table(bytes),
+        },
+        read: |bytes, _| keypoints::from_bytes(bytes).map(|read| read.map(Content::Recording)),
+    },
     Format {
         id: Id::Csv,
         name: "csv",
         title: "comma-separated tables, in radians and metres where a model says which is which",
         endings: &["csv"],
-        reads: &[ContentKind::Motion],
+        reads: &[ContentKind::Motion, ContentKind::Recording],
         writes: &[ContentKind::Motion, ContentKind::Recording],
         sniff: |bytes| {
             let start = starts(bytes, 4096).to_ascii_lowercase();
@@ -338,9 +395,9 @@ pub const FORMATS: &[Format] = &[
     Format {
         id: Id::Poses,
         name: "json",
-        title: "poses by the names of coordinates, and resolved models",
+        title: "poses by the names of coordinates, resolved models, and 3D keypoints",
         endings: &["json"],
-        reads: &[ContentKind::Poses, ContentKind::Model],
+        reads: &[ContentKind::Poses, ContentKind::Model, ContentKind::Recording],
         writes: &[ContentKind::Model],
         sniff: |bytes| starts(bytes, 1024).starts_with(['{', '[']),
         read: |bytes, _| match exchange::is_model(bytes) {
@@ -441,6 +498,10 @@ impl Format {
     /// # Errors
     /// What is wrong, with its place.
     pub fn read(&self, bytes: &[u8], include: &mut Include<'_>) -> Result<Read<Content>, Error> {
+        #[cfg(feature = "poses")]
+        if matches!(self.id, Id::Csv | Id::Poses) && self.holds_keypoints(bytes) {
+            return keypoints::from_bytes(bytes).map(|read| read.map(Content::Recording));
+        }
         (self.read)(bytes, include)
     }
 
@@ -468,7 +529,21 @@ impl Format {
                 let options = glb::Options { assumed: *assumed, ..glb::Options::default() };
                 animation(glb::read(bytes, &options, &mut |_| Err("the file is read alone".into())))
             }
+            #[cfg(feature = "poses")]
+            Id::Keypoints | Id::Csv | Id::Poses if self.holds_keypoints(bytes) => {
+                keypoints::from_bytes_with(bytes, assumed).map(|read| read.map(Content::Recording))
+            }
             _ => self.read(bytes, include),
+        }
+    }
+
+    /// Whether bytes of a format that can hold keypoints do.
+    #[cfg(feature = "poses")]
+    fn holds_keypoints(&self, bytes: &[u8]) -> bool {
+        match self.id {
+            Id::Keypoints => true,
+            Id::Csv => keypoints::is_table(bytes),
+            _ => !exchange::is_model(bytes) && keypoints::is_json(bytes),
         }
     }
 
@@ -527,6 +602,7 @@ mod tests {
                 "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\n1\n".into(),
             ),
             (Id::Document, "# x\ncondyle = 1\nkind = \"model\"\n[segment.a]\n".to_owned()),
+            (Id::Urdf, "<robot name=\"r\"><link name=\"a\"/></robot>".to_owned()),
             (
                 Id::OpenSim,
                 "<?xml version=\"1.0\"?>\n<OpenSimDocument><Model/></OpenSimDocument>".into(),

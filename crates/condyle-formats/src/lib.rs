@@ -13,6 +13,7 @@
 //! | model documents (TOML) | [`document::read`] | [`document::write`] |
 //! | TRC marker recordings | [`trc::read`] | [`trc::write`] |
 //! | STO and MOT motions | [`sto::read`] | [`sto::write`] |
+//! | 3D keypoints of pose estimators (JSON, JSON lines, CSV) | [`keypoints::from_bytes`] | |
 //! | poses (JSON) | [`poses::read`] | |
 //! | resolved models (JSON) | [`exchange::read`] | [`exchange::write`] |
 //! | C3D trials: markers, analog channels, events | [`c3d::from_bytes`] | [`c3d::write`] |
@@ -25,6 +26,9 @@
 //! | FBX skeletons with motion | `fbx::read` | |
 //! | GLB and glTF skeletons with motion; animated scenes | [`glb::read`] | [`glb::write`] |
 //! | GLB characters of a user, given back with a new animation | | [`glb::reanimate`] |
+//! | URDF robot descriptions | [`urdf::from_bytes`] | [`urdf::write`] |
+//! | MJCF models of MuJoCo | | [`mjcf::write`] |
+//! | UsdSkel scenes (USDA) | | [`usd::write`] |
 //! | XML, for readers of models | [`XmlDocument`] | |
 
 pub mod asf;
@@ -41,6 +45,9 @@ pub mod fbx;
 mod format;
 #[cfg(feature = "glb")]
 pub mod glb;
+pub mod keypoints;
+#[cfg(feature = "mjcf")]
+pub mod mjcf;
 #[cfg(feature = "opensim")]
 pub mod opensim;
 #[cfg(feature = "plain")]
@@ -52,11 +59,15 @@ pub mod skeleton;
 pub mod sto;
 pub mod text;
 pub mod trc;
-#[cfg(feature = "opensim")]
+#[cfg(feature = "urdf")]
+pub mod urdf;
+#[cfg(feature = "usd")]
+pub mod usd;
+#[cfg(any(feature = "opensim", feature = "urdf"))]
 pub mod xml;
 
 pub use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Subject, nearest};
 pub use condyle_motion::{AngleUnit, Animation, Gap, LengthUnit, Observed, Recording, Table};
 pub use format::{Content, ContentKind, FORMATS, Format, Id, Include};
-#[cfg(feature = "opensim")]
+#[cfg(any(feature = "opensim", feature = "urdf"))]
 pub use xml::{Element, XmlDocument};

@@ -18,6 +18,7 @@ impl Observed {
 
     /// The position; `None` where the marker was not seen.
     #[must_use]
+    #[inline]
     pub fn position(self) -> Option<[f64; 3]> {
         // A missing marker is stored as NaN, so that the option takes no extra bytes.
         (!self.0[0].is_nan()).then_some(self.0)
@@ -31,8 +32,10 @@ impl Observed {
 
 /// A position with a part that is not a number counts as missing.
 impl From<[f64; 3]> for Observed {
+    #[inline]
     fn from(position: [f64; 3]) -> Self {
-        if position.iter().any(|x| x.is_nan()) { Self::MISSING } else { Self(position) }
+        let [x, y, z] = position;
+        if x.is_nan() | y.is_nan() | z.is_nan() { Self::MISSING } else { Self(position) }
     }
 }
 

@@ -106,6 +106,10 @@ pub fn model(format: &Format, model: &Model) -> Result<Read<Vec<u8>>, Error> {
     match format.id {
         #[cfg(feature = "opensim")]
         Id::OpenSim => Ok(condyle_formats::opensim::write(model).map(String::into_bytes)),
+        #[cfg(feature = "robots")]
+        Id::Urdf => Ok(condyle_formats::urdf::write(model).map(String::into_bytes)),
+        #[cfg(feature = "robots")]
+        Id::Mjcf => Ok(condyle_formats::mjcf::write(model).map(String::into_bytes)),
         _ => {
             let _ = model;
             Err(not_written(format, ContentKind::Model))
@@ -126,6 +130,9 @@ pub fn skeleton(
 ) -> Result<Read<Vec<u8>>, Error> {
     match format.id {
         Id::Bvh => Ok(bvh::write(model, motion, mode, metres_per_unit)?.map(String::into_bytes)),
+        // Its unit is stated: the metre.
+        #[cfg(feature = "usd")]
+        Id::Usda => Ok(condyle_formats::usd::write(model, motion, mode)?.map(String::into_bytes)),
         _ => Err(not_written(format, ContentKind::Scene)),
     }
 }

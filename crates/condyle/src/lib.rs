@@ -91,6 +91,7 @@
 //!     times: vec![0.0],
 //!     positions: vec![[-0.20, -0.35, 0.0].into()],
 //!     units: LengthUnit::Metre,
+//!     ..Recording::default()
 //! };
 //! let tracking = track(&model, &recording, &Request::default(), &mut |_, _| {})?;
 //! let flexion = tracking.motion().frames[0][0];

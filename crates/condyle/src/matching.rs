@@ -1,8 +1,9 @@
 //! Which recorded marker is which marker of the model.
 
 use condyle_diagnostics::{Diagnostic, Error, did_you_mean, listed};
+use condyle_formats::keypoints::{LIMBS, canonical};
 use condyle_model::Model;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// A recorded marker and the model's marker of the same name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +39,7 @@ impl Prefix<'_> {
     }
 }
 
-/// Matches labels to the model's markers: exactly, then without a `Subject:` prefix, then ignoring
+/// Labels of [keypoints](KEYPOINT) are told by all of them. Matches labels to the model's markers: exactly, then without a `Subject:` prefix, then ignoring
 /// case. Every guess is in a warning; a marker is matched once.
 ///
 /// All markers are of one subject, so one prefix holds for all of them; beside it only labels without any
@@ -69,8 +70,10 @@ pub fn match_markers(
     labels: &[String],
     subject: Option<&str>,
 ) -> Result<(Vec<Match>, Vec<Diagnostic>), Error> {
-    let prefixes = prefixes(model, labels);
     let mut warnings = vec![];
+    let keypoints = keypoints(model, labels, &mut warnings);
+    let labels = keypoints.as_deref().unwrap_or(labels);
+    let prefixes = prefixes(model, labels);
     let chosen = match subject {
         Some(subject) => Some(asked_for(&prefixes, subject)?),
         None => choose(&prefixes, &mut warnings)?,
@@ -115,6 +118,61 @@ pub fn match_markers(
     let pairs = matched.into_iter().enumerate();
     let matches = pairs.filter_map(|(marker, label)| Some(Match { marker, label: label?.0 }));
     Ok((matches.collect(), warnings))
+}
+
+/// What the markers of a model are called that stand where estimators of poses see the body: this, and the
+/// name of the [point](condyle_formats::keypoints::canonical).
+pub const KEYPOINT: &str = "keypoint.";
+
+/// The labels of keypoints by the names that a model has for them; `None` where the labels are not those of
+/// keypoints, or the model has no markers for them.
+///
+/// A point is the middle of a joint, where a marker of the same name may lie on the skin. So labels are taken as
+/// keypoints where one person has both shoulders, elbows, wrists, hips, knees and ankles, which no set of markers
+/// has under such names.
+fn keypoints(
+    model: &Model,
+    labels: &[String],
+    warnings: &mut Vec<Diagnostic>,
+) -> Option<Vec<String>> {
+    let known: HashSet<&str> =
+        model.markers().iter().filter_map(|m| m.name.strip_prefix(KEYPOINT)).collect();
+    if known.is_empty() {
+        return None;
+    }
+    let parted = |label: &'_ String| {
+        let at = label.rfind(':').map_or(0, |at| at + 1);
+        (label[..at].to_owned(), canonical(&label[at..]))
+    };
+    let parted: Vec<(String, Option<&str>)> = labels.iter().map(parted).collect();
+    let mut people: HashMap<&str, HashSet<&str>> = HashMap::new();
+    for (prefix, part) in &parted {
+        people.entry(prefix).or_default().extend(part);
+    }
+    let whole = people.values().any(|parts| LIMBS.iter().all(|limb| parts.contains(limb)));
+    if !whole {
+        return None;
+    }
+    let mut taken: HashSet<(&str, &str)> = HashSet::new();
+    let mut unknown = vec![];
+    let renamed = parted.iter().zip(labels).map(|((prefix, part), label)| match part {
+        Some(part) if known.contains(part) && taken.insert((prefix, part)) => {
+            format!("{prefix}{KEYPOINT}{part}")
+        }
+        _ => {
+            unknown.push(label.as_str());
+            label.clone()
+        }
+    });
+    let renamed = renamed.collect();
+    let message = "the labels are those of keypoints: they are taken where estimators of poses see them, \
+                   most in the middle of a joint";
+    let mut said = Diagnostic::note("track/keypoints", message);
+    if !unknown.is_empty() {
+        said = said.with_help(format!("the model has no place for {}", listed(unknown)));
+    }
+    warnings.push(said);
+    Some(renamed)
 }
 
 /// All prefixes that make labels markers of the model, the empty one too, in the order of the labels.

@@ -412,8 +412,13 @@ pub fn recording_with(path: &Path, zeros: Zeros) -> Result<Read<Recording>, Open
     let mut read = if let Some(recording) = parts::recording(path) {
         Read::clean(recording)
     } else if table_format.is_some_and(|f| matches!(f.id, Id::Mot | Id::Sto | Id::Csv)) {
-        let Read { value, warnings } = table(path)?;
-        let markers = Recording::from_table(&value);
+        let Read { value, warnings } = content_with(path, None, zeros)?;
+        let markers = match value {
+            // Keypoints say what they are.
+            Content::Recording(value) => return Ok(Read { value, warnings }),
+            Content::Table(table) => Recording::from_table(&table),
+            _ => return Err(failed(path, Cause::Format { wanted: Some(ContentKind::Recording) })),
+        };
         let markers =
             markers.map_err(|error| failed(path, Cause::Content { error, text: None }))?;
         // What a cell of three numbers is called has no meaning here.

@@ -204,6 +204,7 @@ impl std::error::Error for ScaleError {}
 ///     times: vec![0.0],
 ///     positions: [0.15, 0.3, 0.6].map(|x| [x, 0.0, 0.0].into()).to_vec(),
 ///     units: LengthUnit::Metre,
+///     ..Recording::default()
 /// };
 /// let scaled = fit(&model, &recording, &Assumptions::default()).unwrap();
 /// assert!((scaled.body.factor - 1.5).abs() < 1e-6);

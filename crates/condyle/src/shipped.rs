@@ -47,6 +47,7 @@ const PARTS: &[(&str, &str)] = &[
     ("parts/body.toml", include_str!("../models/parts/body.toml")),
     ("parts/hand.toml", include_str!("../models/parts/hand.toml")),
     ("parts/head.toml", include_str!("../models/parts/head.toml")),
+    ("parts/human-keypoints.toml", include_str!("../models/parts/human-keypoints.toml")),
     ("parts/human-markers.toml", include_str!("../models/parts/human-markers.toml")),
     ("parts/knee-human.toml", include_str!("../models/parts/knee-human.toml")),
     ("parts/leg-bones.toml", include_str!("../models/parts/leg-bones.toml")),

@@ -78,7 +78,7 @@ fn moves(format: &Format) -> bool {
 
 /// Whether a format of other programs holds models as trees of plain joints.
 fn of_models(format: &Format) -> bool {
-    matches!(format.id, Id::OpenSim)
+    matches!(format.id, Id::OpenSim | Id::Urdf | Id::Mjcf)
 }
 
 /// What can be written.
@@ -87,9 +87,9 @@ const WRITTEN: [ContentKind; 4] =
 
 /// The supported conversions, for the message about any other.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
-                     to .glb or .bvh (an animation), .trc or .c3d (the model's markers), and poses (.json) to all \
+                     to .glb, .bvh or .usda (an animation), .trc or .c3d (the model's markers), and poses (.json) to all \
                      of these, with --rate as key poses; a skeleton with its motion (.bvh, .amc, .glb, .gltf, .fbx) to all of these \
-                     without --model, and as a model; all of these motions for another figure with --onto; a model (.osim, .toml, .json, .asf, or a shipped one by name) to .toml, .json (resolved), .glb, .bvh or .osim; \
+                     without --model, and as a model; all of these motions for another figure with --onto; a model (.osim, .urdf, .toml, .json, .asf, or a shipped one by name) to .toml, .json (resolved), .glb, .bvh, .osim, .urdf, .mjcf or .usda; \
                      a recording (.trc, .c3d) to .trc, .c3d or .csv, with --analog its channels to .csv, .mot or .sto";
 
 impl Convert {
@@ -146,7 +146,7 @@ impl Convert {
                 warned(&self.output, encode::model(target, &model)?)
             }
             Content::Model(model) | Content::Document(Document { model, .. })
-                if target.id == Id::Bvh =>
+                if matches!(target.id, Id::Bvh | Id::Usda) =>
             {
                 self.skeleton(target, &model, &Motion::default())?
             }
@@ -254,7 +254,7 @@ impl Convert {
         motion: &Motion,
     ) -> Result<Vec<u8>, Failure> {
         let unit = open::assumed().metres_per_unit;
-        if unit.is_none() {
+        if unit.is_none() && target.id == Id::Bvh {
             say(&format!("note: {}: lengths are in cm (--length-unit)", self.output.display()));
         }
         let unit = unit.unwrap_or(bvh::USUAL_UNIT);
@@ -301,6 +301,7 @@ impl Convert {
         match target.id {
             Id::Document => Ok(document::write(&model).into_bytes()),
             Id::Poses => Ok(exchange::write(&model).into_bytes()),
+            _ if of_models(target) => Ok(warned(&self.output, encode::model(target, &model)?)),
             _ if !moves(target) => Err(self.unknown(target, "")),
             _ if self.model.is_some() => {
                 self.motion_as(Moving::Table(motion.to_table(&model, &self.name())), target)
@@ -356,7 +357,7 @@ impl Convert {
     ) -> Result<Vec<u8>, Failure> {
         match target.id {
             Id::Glb => return self.scene(model, &motion),
-            Id::Bvh => return self.skeleton(target, model, &motion),
+            Id::Bvh | Id::Usda => return self.skeleton(target, model, &motion),
             Id::Trc | Id::C3d => return self.virtual_markers(model, &motion, target),
             _ => motion.make_effective(&Program::compile(model), self.mode()),
         }

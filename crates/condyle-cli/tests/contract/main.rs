@@ -21,6 +21,7 @@ mod pose;
 mod render;
 mod scale;
 mod shipped;
+mod skeleton;
 #[cfg(unix)]
 mod standard_input;
 mod track;

@@ -15,8 +15,8 @@ pub const USUAL_UNIT: f64 = 0.01;
 
 /// A joint whose centre moves less than this, in metres, has no positions.
 const STILL: f64 = 1e-6;
-/// Frames whose times differ from even ones by more than this share of a frame are resampled.
-const UNEVEN: f64 = 0.01;
+/// Times of whole milliseconds differ from even ones by that much, in seconds.
+const MILLISECONDS: f64 = 0.000_51;
 /// The frame time of a single frame, in seconds.
 const USUAL_FRAME_TIME: f64 = 1.0 / 30.0;
 /// The deepest indentation.
@@ -84,8 +84,9 @@ pub fn write(
 fn even(model: &Model, motion: &Motion, warnings: &mut Vec<Diagnostic>) -> Option<Motion> {
     let step = frame_time(motion);
     let first = motion.times.first()?;
-    let uneven =
-        |(frame, time): (usize, &f64)| (time - first - frame as f64 * step).abs() > UNEVEN * step;
+    // Half a millisecond at most, but no tenth of a frame.
+    let most = MILLISECONDS.min(0.1 * step).max(0.01 * step);
+    let uneven = |(frame, time): (usize, &f64)| (time - first - frame as f64 * step).abs() > most;
     if !motion.times.iter().enumerate().any(uneven) {
         return None;
     }

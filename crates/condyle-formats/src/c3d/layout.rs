@@ -129,7 +129,7 @@ pub(super) fn find(
         let message = "there are neither points nor analog channels";
         return Err(Error::new("c3d/no-data", message).at(Place::at_byte(2)));
     };
-    let layout = fitting.unwrap_or_else(|| unfitting(first, &counts, warnings));
+    let layout = fitting.unwrap_or_else(|| unfitting(source, first, &counts, warnings));
     if layout.frames == 0 {
         let message = "the file ends before its first frame";
         let error = Error::new("c3d/truncated", message).at(Place::at_byte(layout.data as u64));
@@ -145,16 +145,30 @@ pub(super) fn find(
 }
 
 /// The first layout with the frames that are there, or the largest number stated that leaves something behind.
-fn unfitting(first: Layout, counts: &[usize], warnings: &mut Warnings) -> Layout {
+fn unfitting(
+    source: &Source<'_>,
+    first: Layout,
+    counts: &[usize],
+    warnings: &mut Warnings,
+) -> Layout {
     let room = first.frames;
-    // Counts of 16 bits start anew at 65536.
-    let wrapped =
-        counts.iter().find(|c| room >= 65536 && (room - (**c % 65536).min(room)) % 65536 <= 1);
+    // Counts of 16 bits start anew at 65536, or stay at 65535; less than a block may follow the last frame.
+    let anew = counts.iter().filter(|count| room >= 65536 && **count <= 65535).find_map(|count| {
+        let surplus = (room - count) % 65536;
+        (surplus * first.frame_bytes() < 512).then_some(room - surplus)
+    });
     let most = counts.iter().copied().max().unwrap_or(0);
-    if most == 0 || wrapped.is_some() {
-        let message = format!("the number of frames is taken from the length of the file: {room}");
+    let frames = match (anew, most) {
+        (Some(frames), _) => Some(frames),
+        (None, 0) => Some(without_padding(source, first)),
+        (None, 65535) if room > 65535 => Some(without_padding(source, first)),
+        _ => None,
+    };
+    if let Some(frames) = frames {
+        let message =
+            format!("the number of frames is taken from the length of the file: {frames}");
         warnings.push(Diagnostic::warning("c3d/frames", message));
-        return first;
+        return Layout { frames, ..first };
     }
     if most > room {
         let message = format!("{most} frames are stated, but the file ends after {room}");
@@ -165,6 +179,19 @@ fn unfitting(first: Layout, counts: &[usize], warnings: &mut Warnings) -> Layout
     let message = format!("{most} frames are stated, and more bytes follow than those take");
     warnings.push(Diagnostic::warning("c3d/frames", message).with_help("the rest is not read"));
     Layout { frames: most, ..first }
+}
+
+/// The frames that are there without those that are only zeros in what fills the last block.
+fn without_padding(source: &Source<'_>, layout: Layout) -> usize {
+    let bytes = layout.frame_bytes();
+    let most = 511 / bytes;
+    let is_zero = |frame: usize| {
+        let start = layout.data + frame * bytes;
+        let frame = source.bytes.get(start..start + bytes);
+        frame.is_some_and(|frame| frame.iter().all(|byte| *byte == 0))
+    };
+    let zeros = (0..layout.frames).rev().take(most).take_while(|frame| is_zero(*frame)).count();
+    layout.frames - zeros
 }
 
 fn say_differences(

@@ -147,6 +147,7 @@ impl Trial {
     ///     times: vec![0.0],
     ///     positions: vec![[0.125, 0.9, -0.12].into()],
     ///     units: LengthUnit::Millimetre,
+    ///     ..Recording::default()
     /// };
     /// let bytes = c3d::write(&c3d::Trial::of(recording.clone()))?;
     /// let read = c3d::from_bytes(&bytes)?.value.recording;

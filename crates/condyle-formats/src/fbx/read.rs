@@ -27,7 +27,7 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Read<Animation>, Error> {
 /// ```
 /// use condyle_formats::fbx;
 /// let error = fbx::from_bytes(b"; FBX 7.4.0 project file\nNonsense").unwrap_err();
-/// assert_eq!(error.code(), "fbx/no-skeleton");
+/// assert_eq!(error.code(), "fbx/damaged");
 /// ```
 pub fn read(bytes: &[u8], options: &Options) -> Result<Read<Animation>, Error> {
     let mut warnings = Warnings::default();

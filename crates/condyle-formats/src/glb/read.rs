@@ -68,8 +68,9 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Read<Animation>, Error> {
 /// let read = glb::read(text.as_bytes(), &Options::default(), &mut |_| Ok(bytes.clone()))?;
 /// let animation = read.value;
 /// assert_eq!(animation.motion.times, [0.0, 1.0]);
-/// assert_eq!(animation.model.stored_len(), 8);
-/// assert!((animation.motion.frames[1][2] - 0.5f64.sqrt()).abs() < 1e-7);
+/// // Three numbers for the place of the root, four for each orientation.
+/// assert_eq!(animation.model.stored_len(), 11);
+/// assert!((animation.motion.frames[1][5] - 0.5f64.sqrt()).abs() < 1e-7);
 /// # Ok::<(), condyle_formats::Error>(())
 /// ```
 pub fn read(

@@ -10,6 +10,7 @@ use condyle_math::function::{
 };
 use condyle_math::{Affine, EulerOrder, Quat, Vec3};
 use condyle_model::component::{AngleNames, MotionLaw, SurfaceAxis};
+use condyle_model::model::ComponentId;
 use condyle_model::{Component, CoordinateId, CoordinateKind, Law, Model, Pose, SegmentId, Signal};
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::rc::Rc;
@@ -65,6 +66,7 @@ enum Raw {
     Unknown {
         what: String,
         reads: Reads,
+        at: Option<ComponentId>,
     },
 }
 
@@ -257,7 +259,7 @@ impl Builder<'_> {
             let steps: Vec<Step> = raw.into_iter().filter_map(Raw::step).collect();
             return (simplified(&steps, &self.tree.rules), None);
         };
-        let (mut before, mut after, mut names) = (vec![], vec![], vec![]);
+        let (mut before, mut after, mut names, mut components) = (vec![], vec![], vec![], vec![]);
         let mut drivers: Option<BTreeSet<Value>> = Some(BTreeSet::new());
         for (place, part) in raw.into_iter().enumerate() {
             match part {
@@ -268,8 +270,9 @@ impl Builder<'_> {
                         all.insert(value);
                     }
                 }
-                Raw::Unknown { what, reads } => {
+                Raw::Unknown { what, reads, at } => {
                     names.push(what);
+                    components.extend(at);
                     match reads {
                         Reads::Values(Some(values)) => {
                             if let Some(all) = &mut drivers {
@@ -311,7 +314,7 @@ impl Builder<'_> {
         steps.extend(turns.map(|(axis, value)| Step::Turn { axis, value }));
         steps.extend(after);
         let what = listed(names);
-        (steps, Some(Measured { at, rest, slots, drivers, what }))
+        (steps, Some(Measured { at, rest, slots, drivers, components, what }))
     }
 
     /// The values of all variables that the motion of a segment depends on.
@@ -348,6 +351,7 @@ impl Builder<'_> {
                 raw.push(Raw::Unknown {
                     what: "a product of too many parts".into(),
                     reads: Reads::Values(None),
+                    at: None,
                 });
                 return;
             }
@@ -357,17 +361,18 @@ impl Builder<'_> {
                 open.extend(component.inputs.iter().rev());
                 continue;
             }
-            self.law(id, component, raw);
+            self.law(id, at, component, raw);
         }
     }
 
-    fn law(&mut self, id: SegmentId, component: &Component, raw: &mut Vec<Raw>) {
+    fn law(&mut self, id: SegmentId, at: ComponentId, component: &Component, raw: &mut Vec<Raw>) {
         let inputs: Option<Vec<Value>> =
             component.values().map(|input| self.scalars.get(&input).copied()).collect();
         let what = || format!("{} `{}`", component.law.kind().name, name_of(self.model, component));
         let unknown = |inputs: Option<Vec<Value>>| Raw::Unknown {
             what: what(),
             reads: Reads::Values(inputs),
+            at: Some(at),
         };
         let steps = match (&component.law, inputs.as_deref()) {
             (Law::Rotate(law), Some(&[value])) => vec![Step::Turn { axis: law.axis, value }],
@@ -428,6 +433,7 @@ impl Builder<'_> {
                 return raw.push(Raw::Unknown {
                     what: what(),
                     reads: Reads::From(component.segments_at("surface").next()),
+                    at: Some(at),
                 });
             }
             _ => return raw.push(unknown(inputs)),

@@ -3,6 +3,7 @@
 use super::rule::{Rules, Value};
 use condyle_math::{Affine, Mat3, Quat, Vec3};
 use condyle_model::SegmentId;
+use condyle_model::model::ComponentId;
 
 /// One part of a chain.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,6 +61,8 @@ pub struct Measured {
     pub slots: [Value; 6],
     /// The values that it depends on, as far as they are known.
     pub drivers: Vec<Value>,
+    /// The components that it is made of.
+    pub components: Vec<ComponentId>,
     /// What it is, for messages.
     pub what: String,
 }

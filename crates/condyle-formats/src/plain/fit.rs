@@ -5,6 +5,7 @@ use super::{Legal, Rule, Tree, Value};
 use condyle_diagnostics::Diagnostic;
 use condyle_math::function::{FunctionOfSeveral, MultivariatePolynomial};
 use condyle_model::Model;
+use condyle_model::model::ComponentId;
 use std::collections::HashMap;
 
 /// A fitted part that is worse than this, in metres, is named as not to be said.
@@ -16,6 +17,8 @@ pub const ANGLE_TOLERANCE: f64 = 0.1 * std::f64::consts::PI / 180.0;
 const MOST_COEFFICIENTS: usize = 500;
 /// The most values that a fitted one depends on.
 const MOST_DRIVERS: usize = 8;
+/// How many poses are tried for one that is legal.
+const MOST_TRIES: usize = 20;
 /// How many poses a tree is compared at.
 pub(crate) const COMPARED: usize = 300;
 
@@ -39,13 +42,10 @@ pub fn fit(model: &Model, tree: &mut Tree) -> Vec<Fit> {
     if measured.is_empty() {
         return fits;
     }
-    let mut legal = Legal::new(model, 5);
-    let count = 4 * MOST_COEFFICIENTS;
-    let samples: Vec<Vec<f64>> = (0..count).map(|_| legal.next_values(tree)).collect();
-    let mut legal = Legal::new(model, 1234);
-    let held: Vec<Vec<f64>> = (0..400).map(|_| legal.next_values(tree)).collect();
     for link in measured {
         let Some(part) = tree.links[link].measured.clone() else { continue };
+        let samples = samples(model, tree, &part.components, 5, 4 * MOST_COEFFICIENTS);
+        let held = samples_held(model, tree, &part.components);
         let order = fit_part(tree, &part.slots, &part.drivers, &samples, &held);
         fits.push(Fit { link, order, error: LinkError::default() });
     }
@@ -68,6 +68,33 @@ pub fn fit(model: &Model, tree: &mut Tree) -> Vec<Fit> {
         });
     }
     fits
+}
+
+/// The values at poses at which the limits of these components hold, at most so many.
+fn samples(
+    model: &Model,
+    tree: &Tree,
+    components: &[ComponentId],
+    seed: u64,
+    count: usize,
+) -> Vec<Vec<f64>> {
+    let mut legal = Legal::new(model, seed);
+    let mut all = vec![];
+    for _ in 0..MOST_TRIES * count {
+        if all.len() == count {
+            break;
+        }
+        let values = legal.next_values(tree);
+        if legal.keeps(components) {
+            all.push(values);
+        }
+    }
+    all
+}
+
+/// Other such poses, to choose the order by.
+fn samples_held(model: &Model, tree: &Tree, components: &[ComponentId]) -> Vec<Vec<f64>> {
+    samples(model, tree, components, 1234, 400)
 }
 
 /// Fits the slots of one part; the order of the polynomials.

@@ -2,6 +2,7 @@
 
 use super::Tree;
 use condyle_math::{Quat, Vec3};
+use condyle_model::model::ComponentId;
 use condyle_model::{CoordinateKind, Mode, Model, Pose, Program};
 
 /// Poses whose coordinates are legal, always the same ones.
@@ -92,6 +93,13 @@ impl<'m> Legal<'m> {
         let open = self.program.evaluate(&effective, Mode::Open, &mut self.pose);
         debug_assert!(open.is_ok(), "stored numbers have the model's length");
         (self.pose.effective().to_vec(), &self.pose)
+    }
+
+    /// Whether limits of these components hold at the pose that was made last: those that posed mode cannot keep,
+    /// since they are on what several segments make together.
+    pub fn keeps(&self, components: &[ComponentId]) -> bool {
+        let bounds = self.program.bounds().iter().filter(|b| components.contains(&b.component));
+        bounds.flat_map(|b| b.rows.clone()).all(|row| self.pose.limit_row(row) >= -1e-9)
     }
 
     /// The values of a tree at the next pose.

@@ -34,9 +34,15 @@ pub fn measure(model: &Model, tree: &Tree, poses: usize) -> Vec<LinkError> {
     let mut legal = Legal::new(model, 77);
     for number in 0..poses {
         let (stored, pose) = if number == 0 { legal.rest() } else { legal.next_pose() };
+        let pose = pose.clone();
+        let pose = &pose;
         let variables = tree.variables_at(model, &stored);
         let values = tree.values_at(model, pose, &variables);
         for (link, error) in tree.links.iter().zip(&mut errors) {
+            let part = link.measured.as_ref();
+            if part.is_some_and(|part| !legal.keeps(&part.components)) {
+                continue;
+            }
             let said = tree.link_transform(link, &values, pose, model);
             *error =
                 error.or(LinkError::between(pose.segment_in_parent(model, link.segment), said));

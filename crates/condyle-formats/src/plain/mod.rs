@@ -27,6 +27,7 @@ mod fit;
 mod legal;
 mod measure;
 mod piece;
+pub mod pieces_of_one;
 mod rule;
 mod written;
 
@@ -36,8 +37,9 @@ pub use fit::{ANGLE_TOLERANCE, Fit, LENGTH_TOLERANCE, fit, polynomial_of_one};
 pub use legal::Legal;
 pub use measure::{LinkError, measure};
 pub use piece::{Piece, completed, is_still, pieces, upright};
+pub use pieces_of_one::Joints;
 pub use rule::{Form, Rule, Rules, Value};
-pub use written::{Names, Written};
+pub use written::{Names, Written, escaped};
 
 use condyle_diagnostics::Diagnostic;
 use condyle_math::{Affine, EulerOrder, Quat};

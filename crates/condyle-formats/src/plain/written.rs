@@ -2,6 +2,7 @@
 
 use super::{Tree, Value};
 use condyle_diagnostics::{Diagnostic, Read};
+use condyle_math::Affine;
 
 /// A model in the text of another program.
 #[derive(Clone, Debug)]
@@ -16,6 +17,8 @@ pub struct Written {
     pub balls: Vec<(String, usize)>,
     /// The names of its bodies, in the order of the tree's links.
     pub bodies: Vec<String>,
+    /// The model's world in that of the file, which has another axis up.
+    pub base: Affine,
     /// What was fitted, dropped or turned into something else.
     pub remarks: Vec<Diagnostic>,
 }
@@ -50,4 +53,21 @@ impl Names {
         }
         name
     }
+}
+
+/// Text that may stand in an attribute.
+#[must_use]
+pub fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            c if c.is_control() => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
 }

@@ -10,7 +10,7 @@
 //! vectors, by angles in radians. A pose outside of the limits is brought to the nearest legal one, so limits
 //! become ranges that are enforced, and the pose the coordinates' defaults. Where nothing is said, the offset
 //! and the pose are 0, there are no limits, and the box reaches from -0.1 to 0.1 along each axis. Boxes are
-//! shapes of the model. The unit of lengths is not stated ([`Assumed`](crate::skeleton::Assumed)); metres are
+//! shapes of the model. The unit of lengths is not stated ([`Assumed`]); metres are
 //! usual.
 //!
 //! DART's skeletons have the same ending and nothing else in common, neither those in XML nor those in its old

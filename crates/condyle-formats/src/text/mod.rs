@@ -8,7 +8,7 @@ mod row;
 
 pub use decode::{MAX_TEXT_BYTES, decode, utf8};
 pub(crate) use decode::{check_size, read_decoded};
-#[cfg(feature = "opensim")]
+#[cfg(any(feature = "opensim", feature = "urdf"))]
 pub(crate) use line::column_at;
 pub(crate) use line::{Line, Lines, last_line, lines};
 pub(crate) use names::distinct;

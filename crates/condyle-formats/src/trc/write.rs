@@ -21,6 +21,7 @@ use condyle_motion::Recording;
 ///     times: vec![0.0],
 ///     positions: vec![[0.125, 0.9, -0.12].into()],
 ///     units: LengthUnit::Millimetre,
+///     ..Recording::default()
 /// };
 /// let text = trc::write(&recording, "static.trc")?;
 /// assert_eq!(text.lines().last(), Some("1\t0\t125\t900\t-120"));
@@ -30,10 +31,10 @@ pub fn write(recording: &Recording, name: &str) -> Result<String, Error> {
     write_with_remarks(recording, name, &[])
 }
 
-/// As [`write`], with remarks in cells of the first line after the name of the file, where readers do not look.
+/// As [`write()`], with remarks in cells of the first line after the name of the file, where readers do not look.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn write_with_remarks(
     recording: &Recording,
     name: &str,

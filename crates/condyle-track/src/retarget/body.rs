@@ -246,6 +246,7 @@ impl Body {
     pub(crate) fn end(&self, part: Part) -> Option<Anchor> {
         let first = |parts: &[Part]| parts.iter().find_map(|part| self.get(*part));
         match part {
+            Part::Clavicle(side) => first(&[Part::UpperArm(side)]),
             Part::UpperArm(side) => first(&[Part::Forearm(side)]),
             Part::Forearm(side) => first(&[Part::Hand(side)]),
             Part::Hand(side) => first(&[

@@ -12,16 +12,20 @@ use crate::{
     Targets, Tracker,
 };
 use condyle_math::{Mat3, Quat, Vec3};
-use condyle_model::SegmentId;
+use condyle_model::{CoordinateId, CoordinateKind, JointSetId, SegmentId};
 use condyle_motion::Motion;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Weights, m² per rad² and per m²; lines have 1.
 mod weight {
     /// A limb or trunk that points where it should.
     pub(super) const LINE: f64 = 1.0;
+    /// A collar bone that turns as the source's does, from where it rests.
+    pub(super) const GIRDLE: f64 = 0.3;
     /// A hand, finger or toe that does.
     pub(super) const SMALL: f64 = 0.1;
+    /// Each rotation between chest and head: a hundredth of what the head weighs.
+    pub(super) const NECK: f64 = 0.003;
     /// The middle between the hips: 10 cm off weigh as much as 0.1 rad of ten lines.
     pub(super) const MIDDLE: f64 = 10.0;
     /// Feet that stand; nearly exact.
@@ -36,7 +40,7 @@ fn turn_weight(part: Part) -> f64 {
         Part::Chest | Part::Head => 0.3,
         Part::Foot(_) => 0.2,
         Part::Hand(_) => 0.1,
-        Part::Clavicle(_) => 0.03,
+        Part::Clavicle(_) => 0.01,
         Part::Neck | Part::UpperArm(_) | Part::Thigh(_) => 0.02,
         Part::Spine(_) => 0.02,
         Part::Shank(_) | Part::Toes(_) => 0.01,
@@ -46,6 +50,19 @@ fn turn_weight(part: Part) -> f64 {
 
 /// Frames on the way from rest to the first.
 const LEAD: usize = 12;
+/// A part that turns by more than this from one frame to the next (radians) is led there: recordings that begin with
+/// a posture for calibration jump from it, and a neck that follows a head at once may wind up on the way.
+const JUMP: f64 = 0.5;
+/// On such a way no part turns by more in a step, radians.
+const STRIDE: f64 = 0.2;
+
+/// What is solved one after the other: frames, and what leads to them.
+enum Step {
+    /// A frame of the motion.
+    Frame(usize),
+    /// Between a frame, or rest, and another one.
+    Way { from: Option<usize>, to: usize, share: f64 },
+}
 
 /// A line that is asked for, and by which the result is measured.
 pub(super) struct Line {
@@ -68,6 +85,8 @@ pub(super) struct Plan {
     pub lines: Vec<Line>,
     pub turns: Vec<Turn>,
     pub middle: Option<(Anchor, Vec<Vec3>)>,
+    /// Rotations that share the way from chest to head.
+    pub neck: Vec<CoordinateId>,
     /// Parts that only one of the two has.
     pub unmatched: [Vec<Part>; 2],
 }
@@ -80,8 +99,13 @@ impl Plan {
         to: &Stance,
         sampled: &Sampled,
     ) -> Self {
-        let mut plan =
-            Self { lines: vec![], turns: vec![], middle: None, unmatched: [vec![], vec![]] };
+        let mut plan = Self {
+            lines: vec![],
+            turns: vec![],
+            middle: None,
+            neck: vec![],
+            unmatched: [vec![], vec![]],
+        };
         let spine = interpolated(from, to, sampled);
         let mut wanted: BTreeMap<Part, Vec<Mat3>> = spine;
         for (part, anchor) in target.body.parts() {
@@ -99,6 +123,10 @@ impl Plan {
                 plan.line(target, part, [start, end], sampled, &turns);
             }
             plan.turns.push(Turn { part, segment: anchor.segment, wanted: turns });
+        }
+        plan.neck = neck_of_bones(target);
+        if !plan.neck.is_empty() {
+            plan.turns.retain(|turn| turn.part != Part::Neck);
         }
         let necks = [source, target].map(|figure| figure.body.get(Part::Neck).is_some());
         if let (Some((low, high)), Some(wanted)) =
@@ -140,6 +168,7 @@ impl Plan {
             | Part::Thigh(_)
             | Part::Shank(_)
             | Part::Foot(_) => weight::LINE,
+            Part::Clavicle(_) => weight::GIRDLE,
             _ => weight::SMALL,
         };
         let at_rest = || {
@@ -150,7 +179,7 @@ impl Plan {
             Some(axes.transpose() * along * (1.0 / along.norm().max(1e-12)))
         };
         let wanted = match (part, sampled.lines.get(&part)) {
-            (Part::Foot(_) | Part::Toes(_), _) => match at_rest() {
+            (Part::Foot(_) | Part::Toes(_) | Part::Clavicle(_), _) => match at_rest() {
                 Some(own) => turns.iter().map(|turn| turn.to_mat3() * own).collect(),
                 None => return,
             },
@@ -170,23 +199,24 @@ impl Plan {
         times: &[f64],
         progress: &mut dyn FnMut(),
     ) -> Motion {
-        let lead = if start.is_some() { 0 } else { LEAD };
-        let targets = self.targets(target, lead, feet);
+        let steps = self.steps(times.len(), start.is_some());
+        let targets = self.targets(target, &steps, feet);
         let rules = Rules { limits: options.limits, tolerance: 1e-6 };
         let tracker = Tracker::new(target.model.with_locked(held::held(target)), targets, rules);
         let mut scratch = Scratch::new(&tracker);
         let mut answer = FrameAnswer::start(&tracker.defaults);
         let mut frames = Vec::with_capacity(times.len());
-        for frame in 0..lead + times.len() {
+        for (frame, step) in steps.iter().enumerate() {
             if let Some(own) = start.and_then(|start| start.frames.get(frame)) {
                 answer.coordinates.clone_from(own);
             }
             let before = answer.minimised();
             tracker.descend(&mut scratch, &[], frame, &mut answer);
-            if frame + 1 == lead && tracker.unwind(&mut answer.coordinates) {
-                tracker.descend(&mut scratch, &[], frame, &mut answer);
-            }
-            if frame < lead {
+            if matches!(step, Step::Way { .. }) {
+                let last = matches!(steps.get(frame + 1), Some(Step::Frame(_)));
+                if last && tracker.unwind(&mut answer.coordinates) {
+                    tracker.descend(&mut scratch, &[], frame, &mut answer);
+                }
                 continue;
             }
             let lost = matches!(answer.status, FrameStatus::Uncertain | FrameStatus::Infeasible);
@@ -202,45 +232,79 @@ impl Plan {
         Motion { times: times.to_vec(), frames }
     }
 
-    fn targets(&self, target: Humanoid<'_>, lead: usize, feet: Option<&Feet>) -> Targets {
+    /// All frames, with ways from rest and across jumps unless each has a start of its own.
+    fn steps(&self, frames: usize, started: bool) -> Vec<Step> {
+        if started {
+            return (0..frames).map(Step::Frame).collect();
+        }
+        let mut steps = vec![];
+        for to in 0..frames {
+            let (from, count) = match to.checked_sub(1) {
+                None => (None, LEAD),
+                Some(from) => {
+                    let turned = |turn: &Turn| match (turn.wanted.get(from), turn.wanted.get(to)) {
+                        (Some(a), Some(b)) => a.angle_to(*b),
+                        _ => 0.0,
+                    };
+                    let jump = self.turns.iter().map(turned).fold(0.0, f64::max);
+                    let count = if jump > JUMP { (jump / STRIDE).ceil() as usize } else { 0 };
+                    (Some(from), count)
+                }
+            };
+            let share = |step: usize| (step + 1) as f64 / (count + 1) as f64;
+            steps.extend((0..count).map(|step| Step::Way { from, to, share: share(step) }));
+            steps.push(Step::Frame(to));
+        }
+        steps
+    }
+
+    fn targets(&self, target: Humanoid<'_>, steps: &[Step], feet: Option<&Feet>) -> Targets {
         let mut posed = Posed::new(target.model);
         let rest = posed.at(&target.model.defaults()).ok();
-        let share = |frame: usize| (frame + 1) as f64 / (lead + 1) as f64;
         let mut targets = Targets::default();
         for turn in &self.turns {
-            let Some(&first) = turn.wanted.first() else { continue };
-            let mut wanted: Vec<Option<Quat>> = vec![None; lead];
-            if let Some(pose) = rest {
-                let own = Quat::from_mat3(rotation_of(pose.segment(turn.segment).linear));
-                for (frame, place) in wanted.iter_mut().enumerate() {
-                    *place = Some(between(own, first, share(frame)));
+            let own =
+                rest.map(|pose| Quat::from_mat3(rotation_of(pose.segment(turn.segment).linear)));
+            let at = |frame: usize| turn.wanted.get(frame).copied();
+            let wanted = steps.iter().map(|step| match step {
+                Step::Frame(frame) => at(*frame),
+                Step::Way { from, to, share } => {
+                    let from = from.map_or(own, at)?;
+                    Some(between(from, at(*to)?, *share))
                 }
-            }
-            wanted.extend(turn.wanted.iter().map(|q| Some(*q)));
+            });
+            let wanted = wanted.collect();
             let weight = turn_weight(turn.part);
             targets.orientations.push(OrientationTarget { segment: turn.segment, weight, wanted });
         }
         for line in &self.lines {
-            let mut wanted: Vec<Option<Vec3>> = vec![None; lead];
-            wanted.extend(line.wanted.iter().map(|d| d.is_finite().then_some(*d)));
+            let wanted = steps.iter().map(|step| match step {
+                Step::Frame(frame) => line.wanted.get(*frame).copied().filter(|d| d.is_finite()),
+                Step::Way { .. } => None,
+            });
             let end = |anchor: Anchor| (anchor.segment, anchor.point);
             targets.directions.push(DirectionTarget {
                 from: end(line.from),
                 to: end(line.to),
                 weight: line.weight,
-                wanted,
+                wanted: wanted.collect(),
             });
         }
         if let Some((anchor, places)) = &self.middle {
-            let own = rest.map(|pose| anchor.placed(pose)).zip(places.first());
-            let way = |frame: usize| own.map(|(a, b)| a + (*b - a) * share(frame));
-            let mut wanted: Vec<Option<Vec3>> = (0..lead).map(way).collect();
-            wanted.extend(places.iter().map(|p| Some(*p)));
+            let own = rest.map(|pose| anchor.placed(pose));
+            let at = |frame: usize| places.get(frame).copied();
+            let wanted = steps.iter().map(|step| match step {
+                Step::Frame(frame) => at(*frame),
+                Step::Way { from, to, share } => {
+                    let from = from.map_or(own, at)?;
+                    Some(from + (at(*to)? - from) * *share)
+                }
+            });
             targets.places.push(PlaceTarget {
                 segment: anchor.segment,
                 point: anchor.point,
                 weight: weight::MIDDLE,
-                wanted,
+                wanted: wanted.collect(),
             });
         }
         for (anchor, places) in feet.iter().flat_map(|feet| &feet.places) {
@@ -261,8 +325,37 @@ impl Plan {
                 stiffness: term.stiffness,
             })
             .collect();
+        let defaults = target.model.defaults();
+        targets.postures.extend(self.neck.iter().map(|id| PostureTarget {
+            terms: vec![(*id, 1.0)],
+            rest: target.model.stored_range(*id).next().map_or(0.0, |at| defaults[at]),
+            stiffness: weight::NECK,
+        }));
         targets
     }
+}
+
+/// The rotations that a neck of several bones and its head have together; none of a neck of one bone.
+///
+/// Such bones share a motion, each by a part of it. Were one of them to turn as the source's neck does, the neck
+/// might bend several times as far, and the head back. So only the head is turned as the source's, and all that moves
+/// it in the chest moves as little as it can.
+fn neck_of_bones(target: Humanoid<'_>) -> Vec<CoordinateId> {
+    let model = target.model;
+    let of = |part: Part| target.body.get(part).map(|anchor| anchor.segment);
+    let (Some(neck), Some(chest), Some(head)) = (of(Part::Neck), of(Part::Chest), of(Part::Head))
+    else {
+        return vec![];
+    };
+    let bones: Vec<SegmentId> =
+        model.path_to_root(head).take_while(|segment| *segment != chest).collect();
+    if !bones.iter().skip(1).any(|bone| *bone != neck) {
+        return vec![];
+    }
+    let sets: BTreeSet<JointSetId> =
+        bones.iter().filter_map(|bone| model.segment(*bone).joint_set).collect();
+    let turns = |id: &CoordinateId| model.coordinate(*id).kind == CoordinateKind::Rotation;
+    sets.into_iter().flat_map(|set| model.coordinates_of(set)).filter(turns).collect()
 }
 
 /// A rotation on the shortest way from one to another.

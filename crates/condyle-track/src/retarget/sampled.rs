@@ -142,8 +142,8 @@ impl Sampled {
     }
 
     /// Turns the frames of feet and toes so that they are level where the feet stand: rest postures of
-    /// skeletons hold feet at other angles than people who stand. A foot that then stands at nearly the slope
-    /// of the target's at rest, from ankle to ball, gets that slope.
+    /// skeletons hold feet at other angles than people who stand. A foot whose line from
+    /// ankle to ball has nearly the slope of the target's keeps that line instead.
     pub(super) fn settle_soles(&mut self, from: &Stance, to: &Stance) {
         for side in Side::BOTH {
             let frames = self.standing_frames(side);
@@ -152,16 +152,19 @@ impl Sampled {
                 let pitches = frames.iter().filter_map(|&frame| Some(axes.get(frame)?.x));
                 // Without standing the posture of rest tells.
                 let mut pitch = match median(pitches.map(|x| x.dot(self.up).asin())) {
-                    Some(pitch) if pitch.abs() > MOST_PITCH => continue,
+                    Some(pitch) if pitch.abs() > MOST_PITCH => 0.0,
                     pitch => pitch.unwrap_or(0.0),
                 };
-                if let (Part::Foot(_), Some(own)) = (part, to.slopes.get(&side)) {
+                if let (Part::Foot(_), Some(own), Some(rest)) =
+                    (part, to.slopes.get(&side), from.slopes.get(&side))
+                {
                     let lines = self.lines.get(&part);
                     let slopes = frames.iter().filter_map(|&frame| lines?.get(frame));
-                    let slope = median(slopes.map(|line| line.dot(self.up).asin()));
-                    let slope = slope.or_else(|| from.slopes.get(&side).copied());
-                    if let Some(slope) = slope.filter(|slope| (slope - own).abs() < ALIKE) {
-                        pitch -= slope - own;
+                    let stands = median(slopes.map(|line| line.dot(self.up).asin()));
+                    let alike = |slope: f64| (slope - own).abs() < ALIKE;
+                    if alike(*rest) || stands.is_some_and(alike) {
+                        // The frame is level at rest: so the line of the target is that of the source.
+                        pitch = own - rest;
                     }
                 }
                 // The third axis of a foot's frame points across it: x turns towards y about z.

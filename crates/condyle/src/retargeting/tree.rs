@@ -196,17 +196,25 @@ pub(super) fn guess(model: &Model) -> Result<Body, Error> {
 }
 
 impl Tree<'_> {
-    /// Which of two legs is which, by where their feet point.
+    /// Which of two legs is which, by where their feet and knees point.
     fn sides(&self, feet: &[Vec<SegmentId>]) -> [Side; 2] {
-        let mut ahead = self.model.facing().direction();
+        let level = |v: Vec3| v - self.up * self.up.dot(v);
+        let mut ahead = Vec3::ZERO;
         for chain in feet {
-            if let [.., ankle, toes] = chain[..] {
-                let along = self.places[toes.index()] - self.places[ankle.index()];
-                let level = along - self.up * self.up.dot(along);
-                if level.norm() > 0.5 * along.norm() {
-                    ahead = level;
-                }
+            let places: Vec<Vec3> =
+                self.leg_of(chain).iter().map(|id| self.places[id.index()]).collect();
+            if let [_, _, ankle, toes, ..] = places[..] {
+                ahead += level(toes - ankle);
             }
+            // A knee is in front of the line from hip to ankle, if anywhere.
+            if let [hip, knee, ankle, ..] = places[..] {
+                let along = (ankle - hip).normalized();
+                let out = knee - hip;
+                ahead += level(out - along * along.dot(out));
+            }
+        }
+        if ahead.norm() < 1e-3 * self.longest.iter().copied().fold(0.0, f64::max) {
+            ahead = self.model.facing().direction();
         }
         let right = ahead.cross(self.up);
         let at = |which: usize| {

@@ -84,6 +84,8 @@ pub(crate) struct Figure {
     /// The lengths of a figure in centimetres are a hundred times those here.
     pub(crate) mixamo: bool,
     pub(crate) unnamed: bool,
+    /// How far the toes are in front of the ankle, in metres.
+    pub(crate) foot: f64,
 }
 
 impl Default for Figure {
@@ -98,6 +100,7 @@ impl Default for Figure {
             odd_axes: false,
             mixamo: false,
             unnamed: false,
+            foot: 0.14,
         }
     }
 }
@@ -151,7 +154,7 @@ impl Figure {
             joints.push(at(0.0, hip, side * 0.09));
             joints.push(at(0.0, knee, side * 0.09));
             joints.push(at(0.0, ankle, side * 0.09));
-            joints.push(at(0.14, 0.03, side * 0.10));
+            joints.push(at(self.foot, 0.03, side * 0.10));
         }
         joints
     }

@@ -126,7 +126,9 @@ fn the_tree_tells_where_no_names_do() {
     let source = Figure::default();
     let model = source.model();
     let motion = source.motion(&model, 60);
-    let target = Figure { unnamed: true, arms: Arms::A, facing: Facing::MinusZ, ..source };
+    // Its feet are as steep as those of some characters, and say all the same which way it looks.
+    let target =
+        Figure { unnamed: true, arms: Arms::A, facing: Facing::MinusZ, foot: 0.02, ..source };
     let other = target.model();
     let known = recognise(&other, None).unwrap();
     assert_eq!(known.table, None);
@@ -254,4 +256,36 @@ fn the_whole_man_is_recognised_and_stands_as_he_does() {
     let wrist = human.find_segment("hand_r").unwrap().index();
     assert!((a[0][hip] - b[0][hip]).norm() < 1e-3);
     assert!((a[0][wrist] - b[0][wrist]).norm() < 5e-3);
+}
+
+#[test]
+fn a_neck_of_several_bones_bends_no_more_than_the_head_turns() {
+    let human = open::model("human".as_ref()).unwrap().value;
+    let value = |motion: &Motion, name: &str| {
+        let id = human.find_coordinate(name).unwrap();
+        motion.frames[0][human.stored_range(id).start].to_degrees()
+    };
+    // The head is turned by 30 degrees and bowed by 20 on the neck alone.
+    let mut own = human.defaults();
+    for (name, degrees) in [("head_rotation", 30.0f64), ("head_flexion", 20.0)] {
+        own[human.stored_range(human.find_coordinate(name).unwrap()).start] = degrees.to_radians();
+    }
+    let motion = Motion { times: vec![0.0], frames: vec![own] };
+    let carried = carried(&human, &motion, &human, Options::default()).motion;
+    for joint in ["cervical", "head"] {
+        for turn in ["flexion", "bending", "rotation"] {
+            // Both together turn by at most the angle of that rotation, 36 degrees.
+            let found = value(&carried, &format!("{joint}_{turn}"));
+            assert!(found.abs() < 36.0, "{joint}_{turn}: {found}");
+        }
+    }
+    let skull = human.find_segment("skull").unwrap();
+    let program = Program::compile(&human);
+    let turned = |motion: &Motion| {
+        let mut pose = Pose::new(&program);
+        program.evaluate(&motion.frames[0], Mode::Open, &mut pose).unwrap();
+        pose.segment(skull).linear
+    };
+    let off = turned(&motion).transpose() * turned(&carried);
+    assert!(off.log().norm().to_degrees() < 1.0);
 }

@@ -18,7 +18,9 @@ mod coupling;
 mod function;
 mod joint;
 
-use crate::plain::{Choice, Piece, Rule, Source, Tree, Value, Written, build, fit, pieces};
+use crate::plain::{
+    Choice, Piece, Rule, Source, Tree, Value, Written, build, escaped, fit, pieces,
+};
 use condyle_diagnostics::{Diagnostic, Read, listed};
 use condyle_math::{Affine, EulerOrder, Vec3};
 use condyle_model::model::Condition;
@@ -51,7 +53,15 @@ pub fn written(model: &Model) -> Written {
     let mut file = File::new(model, tree, remarks);
     let text = file.text();
     let File { tree, coordinates, bodies, remarks, .. } = file;
-    Written { text, joints: coordinates.into_named(), balls: vec![], tree, bodies, remarks }
+    Written {
+        text,
+        joints: coordinates.into_named(),
+        balls: vec![],
+        base: Affine::IDENTITY,
+        tree,
+        bodies,
+        remarks,
+    }
 }
 
 /// One joint of the file with the body that it moves.
@@ -112,7 +122,7 @@ impl<'m> File<'m> {
         let mut out = String::from(
             "<?xml version=\"1.0\" encoding=\"UTF-8\" ?>\n<OpenSimDocument Version=\"40000\">\n",
         );
-        let name = escaped(&self.tree.name);
+        let name = named(&self.tree.name);
         let _ = writeln!(out, "<Model name=\"{name}\">");
         out.push_str(
             "<credits>written by condyle; masses are not known: 1 kg for each segment</credits>\n",
@@ -148,7 +158,7 @@ impl<'m> File<'m> {
                 out,
                 "<Marker name=\"{}\"><socket_parent_frame>{frame}</socket_parent_frame><location>{}</location>\
                  <fixed>true</fixed></Marker>",
-                escaped(&marker.name),
+                named(&marker.name),
                 numbers(marker.point.to_array())
             );
         }
@@ -170,7 +180,7 @@ impl<'m> File<'m> {
     fn closures(&mut self, out: &mut String) {
         let mut lost = vec![];
         for closure in self.model.closures() {
-            let name = escaped(&closure.name);
+            let name = named(&closure.name);
             match &closure.condition {
                 Condition::Points { at } => {
                     let text = self.points(at);
@@ -295,18 +305,8 @@ fn offset(out: &mut String, name: &str, base: &str, frame: &Affine) {
     );
 }
 
-/// Text that may stand in an attribute.
-pub(crate) fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            c if c.is_control() => out.push(' '),
-            c => out.push(c),
-        }
-    }
-    out
+/// A name without the characters that OpenSim refuses in names: its separators of paths, and blanks.
+fn named(name: &str) -> String {
+    let refused = |c: char| c.is_whitespace() || matches!(c, '\\' | '/' | '*' | '+');
+    escaped(&name.chars().map(|c| if refused(c) { '_' } else { c }).collect::<String>())
 }

@@ -1,31 +1,37 @@
 //! A model as another program's file, and beside it what that program should answer: joint values and the
 //! transforms of all bodies at random legal poses. The scripts in `oracles/written/` compare.
 //!
-//! `cargo run --example written -- MODEL FORMAT OUT [POSES]` writes OUT and OUT.json.
+//! `cargo run -p condyle-formats --example written -- MODEL FORMAT OUT [POSES]` writes OUT and OUT.json. MODEL is a
+//! file that needs no other: shipped models by `condyle convert NAME NAME.json`.
 
-use condyle::formats::opensim;
-use condyle::formats::plain::{Legal, Written};
-use condyle::math::{Affine, Quat};
-use condyle::{Model, open};
+use condyle_formats::plain::{Legal, Written};
+use condyle_formats::{Content, Format, mjcf, opensim, urdf, usd};
+use condyle_math::{Affine, Quat};
+use condyle_model::{Mode, Model};
+use condyle_motion::Motion;
 use serde_json::{Map, Value, json};
-use std::path::Path;
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [model, format, out, rest @ ..] = &arguments[..] else {
+    let [model_path, format, out, rest @ ..] = &arguments[..] else {
         eprintln!("usage: written MODEL FORMAT OUT [POSES]");
         std::process::exit(2);
     };
     let poses = rest.first().and_then(|n| n.parse().ok()).unwrap_or(100);
-    let model = match open::model(Path::new(model)) {
-        Ok(read) => read.value,
-        Err(error) => {
-            eprintln!("{error}");
+    let model = match model_of(model_path) {
+        Ok(model) => model,
+        Err(message) => {
+            eprintln!("{model_path}: {message}");
             std::process::exit(1);
         }
     };
     let written = match format.as_str() {
         "osim" => opensim::written(&model),
+        "urdf" => urdf::written(&model),
+        "mjcf" => mjcf::written(&model),
+        "usda" => animated(&model, poses),
+        // The model's own coordinates, for comparing how a file is read.
+        "none" => Written { text: String::new(), ..opensim::written(&model) },
         other => {
             eprintln!("no such format: {other}");
             std::process::exit(2);
@@ -37,6 +43,33 @@ fn main() {
     if let Err(error) = saved {
         eprintln!("{out}: {error}");
         std::process::exit(1);
+    }
+}
+
+/// A motion through the poses that are answered.
+fn animated(model: &Model, count: usize) -> Written {
+    let mut legal = Legal::new(model, 2024);
+    let frames: Vec<Vec<f64>> = (0..count).map(|_| legal.next_pose().0).collect();
+    let motion = Motion { times: (0..count).map(|i| i as f64 / 30.0).collect(), frames };
+    let text = match usd::write(model, &motion, Mode::Open) {
+        Ok(read) => read,
+        Err(error) => {
+            eprintln!("{error}");
+            std::process::exit(1);
+        }
+    };
+    Written { text: text.value, remarks: text.warnings, ..opensim::written(model) }
+}
+
+fn model_of(path: &str) -> Result<Model, String> {
+    let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
+    let format = Format::of_bytes(&bytes).ok_or("no format is recognised")?;
+    let read = format
+        .read(&bytes, &mut |path| std::fs::read_to_string(path).map_err(|error| error.to_string()));
+    match read.map_err(|error| error.to_string())?.value {
+        Content::Model(model) => Ok(model),
+        Content::Document(document) => Ok(document.model),
+        other => Err(format!("it holds {}", other.kind().name())),
     }
 }
 
@@ -71,5 +104,5 @@ fn answer(model: &Model, written: &Written, count: usize) -> Value {
         }));
     }
     let remarks = written.remarks.iter().map(|r| format!("{}: {}", r.code, r.sentence()));
-    json!({ "model": model.name(), "remarks": remarks.collect::<Vec<_>>(), "poses": poses })
+    json!({ "model": model.name(), "remarks": remarks.collect::<Vec<_>>(), "base": written.base.to_rows()[..12], "poses": poses })
 }

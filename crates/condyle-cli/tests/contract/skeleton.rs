@@ -1,0 +1,84 @@
+//! Skeletons with their motion: a file that is both a model and a motion.
+
+use super::Folder;
+use serde_json::Value;
+
+/// A hip that turns about z by 90° in its second frame, with a shank 40 units below.
+const LEG: &str = "HIERARCHY\nROOT hip\n{\nOFFSET 0 90 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation \
+    Xrotation Yrotation\nJOINT shank\n{\nOFFSET 0 -40 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\n\
+    OFFSET 0 -50 0\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 0.5\n0 90 0 0 0 0 0 0 0\n0 90 0 90 0 0 0 0 0\n";
+
+fn translation(frame: &Value, segment: &str) -> [f64; 3] {
+    let rows = &frame["segments"][segment];
+    [3, 7, 11].map(|place| rows[place].as_f64().expect("a number"))
+}
+
+#[test]
+fn its_own_motion_is_posed_and_the_unit_is_told_or_guessed_aloud() {
+    let folder = Folder::new("skeleton-fk");
+    folder.write("leg.bvh", LEG);
+    let guessed = folder.condyle(&["fk", "leg.bvh"]);
+    assert!(guessed.err.contains("--length-unit"), "{}", guessed.err);
+    let told = folder.condyle(&["fk", "leg.bvh", "--length-unit", "cm"]);
+    assert_eq!(told.err, "");
+    let frames = told.json();
+    assert_eq!(frames["frames"].as_array().map(Vec::len), Some(2));
+    assert_eq!(frames["frames"][1]["time"], 0.5);
+    // Turned by 90° about z, the shank that hung down points along +x.
+    let shank = translation(&frames["frames"][1], "shank");
+    for (found, expected) in shank.iter().zip([0.4, 0.9, 0.0]) {
+        assert!((found - expected).abs() < 1e-12, "{shank:?}");
+    }
+    let millimetres = folder.condyle(&["fk", "leg.bvh", "--length-unit", "mm"]).json();
+    assert!((translation(&millimetres["frames"][0], "shank")[1] - 0.05).abs() < 1e-12);
+}
+
+#[test]
+fn it_becomes_a_model_a_motion_a_recording_and_a_skeleton_again() {
+    let folder = Folder::new("skeleton-convert");
+    folder.write("leg.bvh", LEG);
+    for output in ["leg.toml", "leg.json", "leg.osim", "leg.mot", "leg.csv", "leg.trc", "leg.glb"] {
+        folder.condyle(&["convert", "leg.bvh", output, "--length-unit", "cm"]).expect(0);
+    }
+    // The model and the motion alone make the same skeleton.
+    let whole = ["convert", "leg.bvh", "whole.bvh", "--length-unit", "cm"];
+    folder.condyle(&whole).expect(0);
+    let parts = ["convert", "leg.mot", "parts.bvh", "--model", "leg.toml", "--length-unit", "cm"];
+    folder.condyle(&parts).expect(0);
+    assert_eq!(folder.read("whole.bvh"), folder.read("parts.bvh"));
+    assert!(
+        folder
+            .read("whole.bvh")
+            .ends_with("Frames: 2\nFrame Time: 0.5\n0 90 0 0 0 0 0 0 0\n0 90 0 90 0 0 0 0 0\n")
+    );
+    // A turn by 90° in one frame is a finding.
+    let check = folder.condyle(&["check", "leg.bvh", "--length-unit", "cm", "--json"]).expect(1);
+    let check: Value = serde_json::from_str(&check).expect("JSON");
+    assert_eq!(check["motion"]["frames"], 2);
+    assert_eq!(check["motion"]["jumps"][0]["coordinate"], "hip/rz");
+    let info = folder.condyle(&["info", "leg.bvh", "--json"]).json();
+    assert_eq!(info["kind"], "animation");
+    assert_eq!(info["motion"]["rows"], 2);
+}
+
+#[test]
+fn a_take_needs_its_skeleton() {
+    let folder = Folder::new("skeleton-take");
+    let skeleton = ":units\n length 0.45\n angle deg\n:root\n order TX TY TZ RX RY RZ\n:bonedata\n begin\n \
+        name femur\n direction 0 -1 0\n length 7\n axis 0 0 0 XYZ\n dof rx\n end\n:hierarchy\n begin\n \
+        root femur\n end\n";
+    folder.write("anna.asf", skeleton);
+    let take = ":DEGREES\n1\nroot 0 0 0 0 0 0\nfemur 90\n";
+    folder.write("takes/b_1.amc", take).write("c_1.amc", take);
+    let alone = folder.condyle(&["info", "takes/b_1.amc"]);
+    assert_eq!(alone.code, 2);
+    assert!(alone.err.contains("--skeleton"), "{}", alone.err);
+    let beside = folder.condyle(&["fk", "c_1.amc", "--frame-rate", "60"]);
+    assert!(beside.err.contains("anna.asf"), "{}", beside.err);
+    let told = ["convert", "takes/b_1.amc", "-", "--to", "csv", "--frame-rate", "60"];
+    for skeleton in ["--skeleton", "--model"] {
+        let run = folder.condyle(&[&told[..], &[skeleton, "anna.asf"]].concat());
+        assert_eq!(run.err, "");
+        assert!(run.expect(0).contains("femur/rx"));
+    }
+}
