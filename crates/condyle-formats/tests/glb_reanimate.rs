@@ -1,6 +1,6 @@
 //! Characters given back with another animation.
 
-use condyle_formats::glb::{self, NodeMotion, NodeTrack, Old, Options};
+use condyle_formats::glb::{self, Driven, NodeMotion, NodeTrack, Old, Options};
 use condyle_formats::{Animation, Error};
 use condyle_model::{Mode, Pose, Program};
 use serde_json::{Value, json};
@@ -125,7 +125,7 @@ fn bend() -> NodeMotion {
         translations: vec![[5.0, 6.0, 7.0], [5.0, 6.0, 8.0]],
         ..NodeTrack::default()
     };
-    NodeMotion { name: String::new(), times: vec![2.0, 2.5], tracks: vec![knee, hip] }
+    NodeMotion { times: vec![2.0, 2.5], tracks: vec![knee, hip], ..NodeMotion::default() }
 }
 
 #[test]
@@ -160,10 +160,34 @@ fn a_matrix_becomes_its_parts_and_old_animations_may_stay() {
 }
 
 #[test]
-fn buffers_with_an_address_stay_and_the_keys_get_their_own() {
+fn buffers_inside_of_the_json_become_the_binary_chunk() {
     let mut json = character();
-    json["buffers"] =
-        json!([{"byteLength": 3, "uri": "data:application/octet-stream;base64,AQID"}]);
+    json["buffers"] = json!([
+        {"byteLength": 3, "uri": "data:application/octet-stream;base64,AQID"},
+        {"byteLength": 4, "uri": "data:;base64,BAUGBw=="},
+    ]);
+    json["bufferViews"] = json!([
+        {"buffer": 0, "byteLength": 2, "byteOffset": 1},
+        {"buffer": 1, "byteLength": 4},
+        {"buffer": 1, "byteLength": 2, "byteOffset": 2},
+    ]);
+    let bytes = serde_json::to_vec(&json).unwrap();
+    let file = glb::reanimate(&bytes, &bend(), Old::Replaced).unwrap().value;
+    let (after, _, binary) = parts(&file);
+    // The second buffer begins at the next multiple of four.
+    assert_eq!(binary[..8], [1, 2, 3, 0, 4, 5, 6, 7]);
+    assert_eq!(after["buffers"], json!([{"byteLength": 8 + 64}]));
+    let views = after["bufferViews"].as_array().unwrap();
+    assert_eq!(views[0], json!({"buffer": 0, "byteLength": 2, "byteOffset": 1}));
+    assert_eq!(views[1], json!({"buffer": 0, "byteLength": 4, "byteOffset": 4}));
+    assert_eq!(views[2], json!({"buffer": 0, "byteLength": 2, "byteOffset": 6}));
+    assert_eq!(glb::from_bytes(&file).unwrap().value.motion.frames.len(), 2);
+}
+
+#[test]
+fn buffers_elsewhere_stay_and_the_keys_get_their_own() {
+    let mut json = character();
+    json["buffers"] = json!([{"byteLength": 3, "uri": "mesh.bin"}]);
     let bytes = serde_json::to_vec(&json).unwrap();
     let file = glb::reanimate(&bytes, &bend(), Old::Replaced).unwrap().value;
     let (after, _, binary) = parts(&file);
@@ -192,4 +216,35 @@ fn what_does_not_fit_is_refused() {
     let mut partly = bend();
     partly.tracks[1].name = "hips".into();
     assert!(glb::reanimate(&bytes, &partly, Old::Kept).unwrap().warned("glb/node"));
+}
+
+#[test]
+fn morphs_are_driven_by_their_names() {
+    let mut json = character();
+    json["nodes"][1]["mesh"] = json!(0);
+    json["meshes"] = json!([{
+        "primitives": [{"attributes": {}, "targets": [{}, {}]}],
+        "weights": [0.25, 0.5],
+        "extras": {"targetNames": ["frown", "smile"]},
+    }]);
+    let bytes = serde_json::to_vec(&json).unwrap();
+    let mut motion = bend();
+    let driven = |name: &str| Driven { name: name.into(), rest: 0.0, values: vec![0.0, 1.0] };
+    motion.driven = vec![driven("smile"), driven("blink")];
+    let file = glb::reanimate(&bytes, &motion, Old::Replaced).unwrap();
+    let said = file.warnings.iter().find(|w| w.code == "glb/morph").unwrap();
+    assert_eq!(said.message, "no mesh of the file has a morph `blink`");
+    let (after, _, binary) = parts(&file.value);
+    let animation = &after["animations"][0];
+    let channels = animation["channels"].as_array().unwrap();
+    let channel = channels.iter().find(|c| c["target"]["path"] == "weights").unwrap();
+    assert_eq!(channel["target"]["node"], 1);
+    let sampler = &animation["samplers"][channel["sampler"].as_u64().unwrap() as usize];
+    let accessor = &after["accessors"][sampler["output"].as_u64().unwrap() as usize];
+    let view = &after["bufferViews"][accessor["bufferView"].as_u64().unwrap() as usize];
+    let start = view["byteOffset"].as_u64().unwrap() as usize;
+    let numbers = binary[start..start + 16].chunks_exact(4);
+    let numbers: Vec<f32> = numbers.map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
+    // Both weights at each time; the one that nothing drives stays as the mesh has it.
+    assert_eq!(numbers, [0.25, 0.0, 0.25, 1.0]);
 }

@@ -291,17 +291,22 @@ pub fn is_gltf(path: &Path) -> bool {
 }
 
 /// The bytes of a character of glTF with another animation: a motion of the model that [`figure`] opens from it. All else stays as
-/// it is ([`glb::reanimate`]).
+/// it is ([`glb::reanimate`]). What is `driven` moves morphs of that name.
 ///
 /// # Errors
 /// As [`content`]; what [`glb::node_motion`] and [`glb::reanimate`] find wrong.
 #[cfg(feature = "glb")]
-pub fn reanimated(path: &Path, motion: &Motion, name: &str) -> Result<Read<Vec<u8>>, OpenError> {
+pub fn reanimated(
+    path: &Path,
+    motion: &Motion,
+    driven: Vec<glb::Driven>,
+    name: &str,
+) -> Result<Read<Vec<u8>>, OpenError> {
     let bytes = bytes(path)?;
     let options = glb::Options { animation: None, assumed: source::assumed() };
     let tracks = glb::node_motion(&bytes, &options, &mut |name| buffer(path, name), motion);
     let file = tracks.and_then(|tracks| {
-        let named = glb::NodeMotion { name: name.to_owned(), ..tracks };
+        let named = glb::NodeMotion { name: name.to_owned(), driven, ..tracks };
         glb::reanimate(&bytes, &named, glb::Old::Replaced)
     });
     file.map_err(|error| failed(path, Cause::Content { error, text: None }))

@@ -108,8 +108,8 @@ pub fn baked(
     Read { value: scene, warnings: lost.warning(model).into_iter().collect() }
 }
 
-/// The values of coordinates that drive something outside of the model.
-fn driven(model: &Model, motion: &Motion, mode: Mode) -> Vec<Driven> {
+/// The values of coordinates that drive something outside of the model; in posed mode inside their ranges.
+pub fn driven(model: &Model, motion: &Motion, mode: Mode) -> Vec<Driven> {
     let mut found = vec![];
     let mut start = 0;
     for id in model.coordinate_ids() {

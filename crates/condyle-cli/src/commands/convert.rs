@@ -19,7 +19,7 @@ use condyle::formats::{Content, ContentKind, Format, Id, LengthUnit, Recording};
 use condyle::open::{Cause, OpenError};
 use condyle::{
     AngleUnit, Animation, Error, Interpolation, Mode, Model, Motion, Program, Table, encode, legal,
-    open, shipped,
+    open, scene, shipped,
 };
 use std::path::{Path, PathBuf};
 
@@ -323,7 +323,9 @@ impl Convert {
             if let Some(path) = self.onto.onto.as_ref().filter(|path| open::is_gltf(path))
                 && target.id == Id::Glb
             {
-                return Ok(warned(path, open::reanimated(path, &carried, &self.name())?));
+                let driven = scene::driven(model, &motion, self.mode());
+                let file = open::reanimated(path, &carried, driven, &self.name())?;
+                return Ok(warned(path, file));
             }
             return self.written(&onto, carried, target);
         }

@@ -48,7 +48,7 @@ impl Still {
                 nodes.push(node);
             }
             let matrices = matrices(skin, joints.len(), accessors, warnings)?;
-            // Meshes stand in the scene, or where their node is.
+            // Meshes stand in the scene, or where their node is, or where the figure hangs.
             let first = (0..nodes.len()).min_by_key(|at| rank[nodes[*at]]);
             let mesh = mesh_of.get(&number).copied();
             let far = |base: Affine| {
@@ -56,8 +56,15 @@ impl Still {
                 let at = first.and_then(|at| world.get(*nodes.get(at)?));
                 place.zip(at).map_or(f64::INFINITY, |(a, b)| distance(a, *b))
             };
-            let base = mesh.and_then(|mesh| world.get(mesh)).copied().unwrap_or(Affine::IDENTITY);
-            let base = if far(base) < far(Affine::IDENTITY) { base } else { Affine::IDENTITY };
+            // Which of them is told by the topmost joint: where it is bound there is nearest to where it stands.
+            let above = first.and_then(|at| tree.nodes.get(*nodes.get(at)?)?.parent);
+            let places = [mesh, above].into_iter().flatten().filter_map(|at| world.get(at));
+            let mut base = Affine::IDENTITY;
+            for place in places {
+                if far(*place) < far(base) {
+                    base = *place;
+                }
+            }
             for (node, matrix) in nodes.into_iter().zip(matrices) {
                 bound[node] = bound[node].or(matrix.map(|matrix| base * matrix));
             }

@@ -283,13 +283,16 @@ fn grid(keys: &[f64]) -> Option<usize> {
     if keys.len() < 2 {
         return Some(0);
     }
-    let steps = ((last - first) / least).round();
-    let part = (last - first) / steps;
-    // Times in 32 bits are known to 6e-8 of their size.
-    let near = 0.002 * part + 2e-7 * last.abs();
-    let on =
-        |time: &f64| ((time - first) / part - ((time - first) / part).round()).abs() * part <= near;
-    (steps < 1e7 && keys.iter().all(on)).then_some(steps as usize)
+    // Times in 32 bits are known to 6e-8 of their size; so is the least step, and the number of steps that follows from it.
+    let even = |steps: f64| {
+        let part = (last - first) / steps;
+        let near = 0.002 * part + 2e-7 * last.abs();
+        let off =
+            |time: &f64| ((time - first) / part - ((time - first) / part).round()).abs() * part;
+        steps < 1e7 && keys.iter().all(|time| off(time) <= near)
+    };
+    let candidates = [(keys.len() - 1) as f64, ((last - first) / least).round()];
+    candidates.into_iter().find(|steps| even(*steps)).map(|steps| steps as usize)
 }
 
 /// Times with others between them, so that none is farther than `step` from the next.
@@ -373,4 +376,21 @@ fn slerp(a: [f64; 4], b: [f64; 4], u: f64) -> [f64; 4] {
     let angle = sine.atan2(dot);
     let mix = |x: f64, y: f64| unit(std::array::from_fn(|i| x * a[i] + y * b[i]));
     if angle < 1e-9 { mix(1.0 - u, u) } else { mix(((1.0 - u) * angle).sin(), (u * angle).sin()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::grid;
+
+    #[test]
+    fn even_times_are_found_in_single_precision() {
+        // Five minutes at 120 Hz, rounded to 32 bits: the steps differ by up to 4e-3 of their size.
+        let times: Vec<f64> = (0..36_000).map(|k| f64::from(k as f32 / 120.0)).collect();
+        assert_eq!(grid(&times), Some(35_999));
+        // Keys of several nodes that are on one grid of 24 Hz, not at all of its times.
+        let some: Vec<f64> = [0, 1, 5, 6, 48].map(|k| f64::from(k as f32 / 24.0)).to_vec();
+        assert_eq!(grid(&some), Some(48));
+        assert_eq!(grid(&[0.0, 0.1, 0.2001, 0.3345]), None);
+        assert_eq!(grid(&[0.5]), Some(0));
+    }
 }

@@ -282,7 +282,7 @@ impl Figure {
                 tracks.push(track);
             }
         }
-        Ok(NodeMotion { name: String::new(), times: motion.times.clone(), tracks })
+        Ok(NodeMotion { times: motion.times.clone(), tracks, ..NodeMotion::default() })
     }
 }
 

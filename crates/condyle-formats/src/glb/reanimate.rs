@@ -2,7 +2,7 @@
 
 use super::container::Container;
 use super::json::{self, Item};
-use super::scene::LocalPose;
+use super::scene::{Driven, LocalPose};
 use super::splice::Splice;
 use super::tree::Tree;
 use super::write::{continuous, kept_frames};
@@ -32,6 +32,8 @@ pub struct NodeMotion {
     pub times: Vec<f64>,
     /// Nodes that move.
     pub tracks: Vec<NodeTrack>,
+    /// Morphs by the names that the meshes' extras give them (`targetNames`), as most programs write them.
+    pub driven: Vec<Driven>,
 }
 
 /// What becomes of the animations that a file has.
@@ -47,8 +49,8 @@ pub enum Old {
 /// Gives a character a new animation.
 ///
 /// Meshes, skins, materials, textures, nodes, extras and extensions stay byte for byte as they are, as do all bytes of the
-/// binary chunk; the keys are appended to it. A glTF file in JSON becomes a GLB whose keys are in an address of its JSON; its
-/// other buffers stay where they are. Linear keys in 32 bits; a node's property that never changes has one key.
+/// binary chunk; the keys are appended to it. A glTF file in JSON becomes a GLB: buffers that it holds become the binary chunk; where
+/// others are beside it, all stay where they are and the keys are in an address of their own. Linear keys in 32 bits; a node's property that never changes has one key.
 ///
 /// [`node_motion`](super::node_motion) makes the tracks from a motion of the model that [`read`](super::read) gives. Who computes them in another way
 /// gives for each node its transform in its parent as glTF has it, scaled first, then rotated, then translated, with lengths
@@ -56,6 +58,7 @@ pub enum Old {
 ///
 /// # Warnings
 /// `glb/replaced` with the names of animations that are left out, `glb/node` with names that the file does not have,
+/// `glb/morph` for what is driven and no mesh has,
 /// `glb/matrix` for a node whose matrix is written as its three parts, since one with a matrix cannot move.
 ///
 /// # Errors
@@ -71,7 +74,12 @@ pub enum Old {
 ///     translations: vec![[0.0, 0.9, 0.0], [0.0, 1.0, 0.5]],
 ///     ..NodeTrack::default()
 /// };
-/// let jump = NodeMotion { name: "jump".into(), times: vec![0.0, 0.5], tracks: vec![hip] };
+/// let jump = NodeMotion {
+///     name: "jump".into(),
+///     times: vec![0.0, 0.5],
+///     tracks: vec![hip],
+///     ..NodeMotion::default()
+/// };
 /// let file = glb::reanimate(character, &jump, Old::Replaced)?.value;
 /// let read = glb::from_bytes(&file)?.value;
 /// assert_eq!(read.motion.frames[1][..3], [0.0, 1.0, 0.5]);
@@ -92,11 +100,14 @@ pub fn reanimate(bytes: &[u8], motion: &NodeMotion, old: Old) -> Result<Read<Vec
     let binary = container.binary.clone().and_then(|range| bytes.get(range));
     // The keys go into the binary chunk, which is the first buffer, if that has no address of its own.
     let first = root.element("buffers", 0).ok();
+    let joined = if container.is_binary { None } else { joined(&mut splice, &root)? };
     let own_chunk = match &first {
         None => true,
+        Some(_) if joined.is_some() => true,
         Some(buffer) => buffer.text("uri").is_none() && binary.is_some(),
     };
-    let before = if own_chunk { binary.map_or(0, <[u8]>::len).next_multiple_of(4) } else { 0 };
+    let chunk = joined.as_deref().or(binary).unwrap_or_default();
+    let before = if own_chunk { chunk.len().next_multiple_of(4) } else { 0 };
     let buffers = root.list("buffers")?.len();
     let mut keys = Keys {
         bytes: vec![],
@@ -106,11 +117,15 @@ pub fn reanimate(bytes: &[u8], motion: &NodeMotion, old: Old) -> Result<Read<Vec
         accessors: root.list("accessors")?.len(),
         splice: &mut splice,
     };
-    let animation = keys.animation(motion, &tracks)?;
+    let morphs = morphs(motion, &root, &mut warnings)?;
+    let animation = keys.animation(motion, &tracks, &morphs)?;
     let added = keys.bytes;
     let total = before + added.len();
     if own_chunk {
         match &first {
+            Some(_) if joined.is_some() => {
+                splice.add("buffers", json!({ "byteLength": total }).to_string(), true);
+            }
             Some(_) => set_length(&mut splice, total),
             None => splice.add("buffers", json!({ "byteLength": total }).to_string(), false),
         }
@@ -121,7 +136,7 @@ pub fn reanimate(bytes: &[u8], motion: &NodeMotion, old: Old) -> Result<Read<Vec
     add_animation(&mut splice, &root, animation, old)?;
     unpack_matrices(&mut splice, &root, &tree, &tracks, &mut warnings)?;
 
-    let mut chunk = binary.unwrap_or_default().to_vec();
+    let mut chunk = chunk.to_vec();
     if own_chunk {
         chunk.resize(before, 0);
         chunk.extend(added);
@@ -166,6 +181,78 @@ fn found<'m>(
         warnings.push(Diagnostic::warning("glb/node", message).with_help(help));
     }
     Ok(tracks)
+}
+
+/// The morphs of the mesh of one node.
+struct Morphs<'m> {
+    node: usize,
+    weights: Vec<Weight<'m>>,
+}
+
+/// The weight of a morph.
+enum Weight<'m> {
+    Still(f64),
+    Driven(&'m Driven),
+}
+
+/// Nodes with a mesh that has a morph which is driven.
+fn morphs<'m>(
+    motion: &'m NodeMotion,
+    root: &Item<'_>,
+    warnings: &mut Warnings,
+) -> Result<Vec<Morphs<'m>>, Error> {
+    let (mut found, mut used) = (vec![], vec![false; motion.driven.len()]);
+    for driven in &motion.driven {
+        let finite = driven.values.iter().all(|x| x.abs() < 1e9);
+        if driven.values.len() != motion.times.len() || !finite {
+            let message =
+                format!("what drives `{}` has {} values", driven.name, driven.values.len());
+            return Err(Error::new("glb/track", message).with_help(format!(
+                "expected {} finite ones, one for each time",
+                motion.times.len()
+            )));
+        }
+    }
+    let nodes = if motion.driven.is_empty() { vec![] } else { root.list("nodes")? };
+    for (index, node) in nodes.iter().enumerate() {
+        let Some(mesh) = node.get("mesh") else { continue };
+        let mesh = root.element("meshes", mesh.index()?)?;
+        let extras = mesh.get("extras");
+        let names = extras.map_or(Ok(vec![]), |extras| extras.list("targetNames"))?;
+        let targets = mesh.element("primitives", 0).and_then(|part| part.list("targets"));
+        if names.is_empty() || targets.map_or(0, |targets| targets.len()) != names.len() {
+            continue;
+        }
+        let still = if node.get("weights").is_some() { node } else { &mesh };
+        let still = still.list("weights")?;
+        let mut any = false;
+        let weights = names.iter().enumerate().map(|(place, name)| {
+            let name = name.value.as_str();
+            match motion.driven.iter().position(|driven| Some(driven.name.as_str()) == name) {
+                Some(driven) => {
+                    (any, used[driven]) = (true, true);
+                    Weight::Driven(&motion.driven[driven])
+                }
+                None => {
+                    Weight::Still(still.get(place).and_then(|w| w.value.as_f64()).unwrap_or(0.0))
+                }
+            }
+        });
+        let weights = weights.collect();
+        if any {
+            found.push(Morphs { node: index, weights });
+        }
+    }
+    let lost = motion.driven.iter().zip(used).filter(|(_, used)| !used);
+    let lost: Vec<&str> = lost.map(|(driven, _)| driven.name.as_str()).collect();
+    if !lost.is_empty() {
+        let message = format!("no mesh of the file has a morph {}", listed(&lost));
+        warnings.push(
+            Diagnostic::warning("glb/morph", message)
+                .with_help("meshes name their morphs in extras.targetNames"),
+        );
+    }
+    Ok(found)
 }
 
 fn check(track: &NodeTrack, frames: usize) -> Result<(), Error> {
@@ -228,7 +315,12 @@ struct Keys<'s, 't> {
 
 impl Keys<'_, '_> {
     /// The animation in JSON.
-    fn animation(&mut self, motion: &NodeMotion, tracks: &[Found<'_>]) -> Result<String, Error> {
+    fn animation(
+        &mut self,
+        motion: &NodeMotion,
+        tracks: &[Found<'_>],
+        morphs: &[Morphs<'_>],
+    ) -> Result<String, Error> {
         let kept = kept_frames(&motion.times);
         let mut clocks = [None; 2];
         let (mut samplers, mut channels) = (vec![], vec![]);
@@ -269,6 +361,28 @@ impl Keys<'_, '_> {
                 samplers.push(json!({"input": input, "output": output}));
             }
         }
+        for Morphs { node, weights } in morphs {
+            let at = |frame: usize, weight: &Weight<'_>| match weight {
+                Weight::Still(value) => *value as f32,
+                Weight::Driven(driven) => driven.values.get(frame).copied().unwrap_or(0.0) as f32,
+            };
+            let frames = kept.iter().map(|(frame, _)| *frame);
+            let values: Vec<f32> = frames
+                .flat_map(|frame| weights.iter().map(move |weight| at(frame, weight)))
+                .collect();
+            let input = match clocks[0] {
+                Some(input) => input,
+                None => {
+                    let times: Vec<f32> = kept.iter().map(|(_, time)| *time).collect();
+                    *clocks[0].insert(self.accessor(&times, 1))
+                }
+            };
+            let output = self.accessor(&values, 1);
+            channels.push(
+                json!({"sampler": samplers.len(), "target": {"node": node, "path": "weights"}}),
+            );
+            samplers.push(json!({"input": input, "output": output}));
+        }
         if channels.is_empty() {
             return Err(Error::new("glb/track", "no track moves anything"));
         }
@@ -301,6 +415,47 @@ impl Keys<'_, '_> {
 
 fn flat<const N: usize>(vectors: &[[f32; N]]) -> Vec<f32> {
     vectors.concat()
+}
+
+/// The buffers that a JSON holds in its addresses, one after the other for the binary chunk, with their views moved there; `None`
+/// if one of them is elsewhere, or views have extensions, which may name buffers too.
+fn joined(splice: &mut Splice<'_>, root: &Item<'_>) -> Result<Option<Vec<u8>>, Error> {
+    let (mut bytes, mut starts): (Vec<u8>, Vec<usize>) = (vec![], vec![]);
+    for buffer in root.list("buffers")? {
+        let data = buffer.text("uri").and_then(|uri| uri.strip_prefix("data:"));
+        let data = data.and_then(|data| data.split_once(";base64,"));
+        let Some(data) = data.and_then(|(_, text)| super::base64::decode(text)) else {
+            return Ok(None);
+        };
+        bytes.resize(bytes.len().next_multiple_of(4), 0);
+        starts.push(bytes.len());
+        bytes.extend(data);
+    }
+    let views = root.list("bufferViews")?;
+    if starts.is_empty() || views.iter().any(|view| view.get("extensions").is_some()) {
+        return Ok(None);
+    }
+    let list = splice.member(splice.top(), "bufferViews");
+    let places = list.map_or_else(Vec::new, |list| splice.elements(list.start));
+    for (view, place) in views.iter().zip(places) {
+        let buffer = view.need("buffer")?.below(starts.len(), "buffer")?;
+        let start = starts.get(buffer).copied().unwrap_or(0);
+        if buffer == 0 {
+            continue;
+        }
+        let offset = start + view.size_or("byteOffset", 0)?;
+        if let Some(known) = splice.member(place.start, "byteOffset") {
+            splice.replace(known, offset.to_string());
+        }
+        if let Some(known) = splice.member(place.start, "buffer") {
+            let new = match view.get("byteOffset") {
+                Some(_) => "0".to_owned(),
+                None => format!("0,\"byteOffset\":{offset}"),
+            };
+            splice.replace(known, new);
+        }
+    }
+    Ok(Some(bytes))
 }
 
 /// States the length of the first buffer.
