@@ -253,17 +253,6 @@ pub const FORMATS: &[Format] = &[
             }))
         },
     },
-    #[cfg(feature = "urdf")]
-    Format {
-        id: Id::Urdf,
-        name: "urdf",
-        title: "robot descriptions of ROS",
-        endings: &["urdf"],
-        reads: &[ContentKind::Model],
-        writes: &[ContentKind::Model],
-        sniff: |bytes| starts(bytes, 4096).contains("<robot"),
-        read: |bytes, _| urdf::from_bytes(bytes).map(|read| read.map(Content::Model)),
-    },
     #[cfg(feature = "mjcf")]
     Format {
         id: Id::Mjcf,
@@ -341,6 +330,17 @@ pub const FORMATS: &[Format] = &[
             false => keypoints::is_table(bytes),
         },
         read: |bytes, _| keypoints::from_bytes(bytes).map(|read| read.map(Content::Recording)),
+    },
+    #[cfg(feature = "urdf")]
+    Format {
+        id: Id::Urdf,
+        name: "urdf",
+        title: "robot descriptions of ROS",
+        endings: &["urdf"],
+        reads: &[ContentKind::Model],
+        writes: &[ContentKind::Model],
+        sniff: |bytes| starts(bytes, 4096).contains("<robot"),
+        read: |bytes, _| urdf::from_bytes(bytes).map(|read| read.map(Content::Model)),
     },
     Format {
         id: Id::Csv,

@@ -18,6 +18,7 @@ mod angles;
 mod animation;
 pub mod columns;
 pub mod difference;
+pub mod keypoint;
 mod keys;
 mod length_unit;
 mod marker_table;

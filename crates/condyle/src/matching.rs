@@ -1,8 +1,8 @@
 //! Which recorded marker is which marker of the model.
 
 use condyle_diagnostics::{Diagnostic, Error, did_you_mean, listed};
-use condyle_formats::keypoints::{LIMBS, canonical};
 use condyle_model::Model;
+use condyle_motion::keypoint::{LIMBS, canonical};
 use std::collections::{HashMap, HashSet};
 
 /// A recorded marker and the model's marker of the same name.
@@ -121,7 +121,7 @@ pub fn match_markers(
 }
 
 /// What the markers of a model are called that stand where estimators of poses see the body: this, and the
-/// name of the [point](condyle_formats::keypoints::canonical).
+/// name of the [point](condyle_motion::keypoint::canonical).
 pub const KEYPOINT: &str = "keypoint.";
 
 /// The labels of keypoints by the names that a model has for them; `None` where the labels are not those of

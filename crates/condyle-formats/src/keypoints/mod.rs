@@ -26,7 +26,6 @@
 
 #[cfg(feature = "poses")]
 mod json;
-mod parts;
 #[cfg(feature = "poses")]
 mod raw;
 mod sets;
@@ -35,7 +34,7 @@ mod settle;
 #[cfg(feature = "poses")]
 mod table;
 
-pub use parts::{LIMBS, canonical};
+pub use condyle_motion::keypoint::{LIMBS, canonical};
 pub use sets::{KeypointSet, SETS};
 
 #[cfg(feature = "poses")]

@@ -1,10 +1,10 @@
 //! Axes, unit, rate and confidences of keypoints, and the recording that they are.
 
-use super::parts::canonical;
 use super::raw::Raw;
 use crate::skeleton::Assumed;
 use condyle_diagnostics::{Diagnostic, Error};
 use condyle_model::UpAxis;
+use condyle_motion::keypoint::canonical;
 use condyle_motion::{LengthUnit, Observed, Recording};
 use std::collections::HashMap;
 

@@ -1,10 +1,10 @@
 //! Keypoints in tables: a row a frame, or a row a point.
 
-use super::parts::{LIMBS, canonical};
 use super::raw::{Person, Raw};
 use crate::csv::{cells, delimiter_of};
 use crate::text::{self, Line, lines};
 use condyle_diagnostics::{Diagnostic, Error, Read, Warnings};
+use condyle_motion::keypoint::{LIMBS, canonical};
 
 /// What the columns of a point end in, after a sign: place, then confidence.
 const AXES: [&[&str]; 4] = [

@@ -1,4 +1,4 @@
-//! What a point is, however its name is spelt.
+//! Points that estimators of poses find: what each is, however its name is spelt.
 
 /// The points that every set has: both shoulders, elbows, wrists, hips, knees and ankles.
 pub const LIMBS: [&str; 12] = [
@@ -52,7 +52,7 @@ const MIDDLE: [(&[&str], &str); 4] = [
 /// `right_hip`; `None` where it is none of those that the sets have.
 ///
 /// ```
-/// use condyle_formats::keypoints::canonical;
+/// use condyle_motion::keypoint::canonical;
 /// for name in ["RHip", "right_hip", "RIGHT_HIP", "hip.R", "rightHip", "rhip"] {
 ///     assert_eq!(canonical(name), Some("right_hip"), "{name}");
 /// }
