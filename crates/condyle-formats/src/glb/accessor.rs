@@ -1,7 +1,7 @@
 //! Accessors: numbers of any component type in buffers, interleaved or sparse.
 
 use super::base64;
-use super::json::Item;
+use super::json::{Item, LARGEST};
 use condyle_diagnostics::Error;
 use serde_json::Value;
 use std::borrow::Cow;
@@ -162,8 +162,10 @@ impl<'b, 'j, 'r> Accessors<'b, 'j, 'r> {
         if let Some(sparse) = accessor.get("sparse") {
             self.replace(&sparse, &mut values, width, count, component, normalised)?;
         }
-        if let Some(bad) = values.iter().position(|x| !x.is_finite()) {
-            let message = format!("{}: element {} is not finite", accessor.shown(), bad / width);
+        if let Some(bad) = values.iter().position(|x| x.is_nan() || x.abs() > LARGEST) {
+            let element = bad / width;
+            let message =
+                format!("{}: element {element} is no number of a figure", accessor.shown());
             return Err(Error::new("glb/accessor", message));
         }
         Ok(Numbers { values, width })

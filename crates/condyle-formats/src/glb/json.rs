@@ -33,6 +33,9 @@ pub(super) fn parse(text: &[u8]) -> Result<Value, Error> {
     })
 }
 
+/// No place, turn or size of a figure is larger; products of two of them are still numbers.
+pub(super) const LARGEST: f64 = 1e15;
+
 /// A value and the way to it: `/nodes/3/scale`.
 #[derive(Clone, Debug)]
 pub(super) struct Item<'j> {
@@ -121,14 +124,14 @@ impl<'j> Item<'j> {
         self.value.get(key)?.as_str()
     }
 
-    /// A member that is so many finite numbers.
+    /// A member that is so many numbers, none beyond [`LARGEST`].
     pub(super) fn numbers<const N: usize>(&self, key: &str) -> Result<Option<[f64; N]>, Error> {
         let Some(item) = self.get(key) else { return Ok(None) };
         let list = item.value.as_array().filter(|list| list.len() == N);
         let list = list.ok_or_else(|| item.wrong(&format!("a list of {N} numbers")))?;
         let mut numbers = [0.0; N];
         for (number, value) in numbers.iter_mut().zip(list) {
-            let read = value.as_f64().filter(|x| x.is_finite());
+            let read = value.as_f64().filter(|x| x.abs() <= LARGEST);
             *number = read.ok_or_else(|| item.wrong(&format!("a list of {N} numbers")))?;
         }
         Ok(Some(numbers))

@@ -49,7 +49,7 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Read<Animation>, Error> {
 /// # Errors
 /// `glb/json`, `glb/version`, `glb/chunk`, `glb/reference`, `glb/cycle`, `glb/buffer`, `glb/accessor`, `glb/size`,
 /// `glb/keys`, `glb/time`, `glb/interpolation`, `glb/no-joints`, `glb/no-skeleton` without skin and animation,
-/// `glb/animation` if there is none of the wanted name.
+/// `glb/animation` if there is none of the wanted name, `glb/pose` where scales multiply beyond any number.
 ///
 /// ```
 /// use condyle_formats::glb::{self, Options};
@@ -81,6 +81,11 @@ pub fn read(
     let mut warnings = Warnings::default();
     let Parts { tree, bound, clip, figure } = parts(bytes, options, beside, &mut warnings)?;
     let motion = figure.motion(&tree, &bound, &clip, bytes.len(), &mut warnings);
+    if let Some(bad) = motion.frames.iter().position(|f| f.iter().any(|x| !x.is_finite())) {
+        let message = format!("frame {bad} holds what is no number");
+        return Err(Error::new("glb/pose", message)
+            .with_help("scales of the nodes above multiply beyond any number"));
+    }
     let Read { value: model, warnings: told } = figure.skeleton.build()?;
     warnings.extend(told);
     Ok(Read { value: Animation { model, motion }, warnings: warnings.finish() })
