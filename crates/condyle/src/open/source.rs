@@ -46,6 +46,7 @@ pub fn animation_is(name: &str) {
 }
 
 /// What [`animation_is`] said.
+#[cfg(any(feature = "glb", feature = "fbx"))]
 pub(super) fn wanted_animation() -> Option<String> {
     WANTED.get().cloned()
 }
