@@ -39,8 +39,9 @@ impl Prefix<'_> {
     }
 }
 
-/// Labels of [keypoints](KEYPOINT) are told by all of them. Matches labels to the model's markers: exactly, then without a `Subject:` prefix, then ignoring
-/// case. Every guess is in a warning; a marker is matched once.
+/// Matches labels to the model's markers: exactly, then without a `Subject:` prefix, then ignoring case. Every guess is in
+/// a warning; a marker is matched once. Labels that together are a set of keypoints find the model's
+/// [places for them](KEYPOINT).
 ///
 /// All markers are of one subject, so one prefix holds for all of them; beside it only labels without any
 /// are used. It may end in a colon or in another separator, as of `Anna_RFHD`. Where several people are in
