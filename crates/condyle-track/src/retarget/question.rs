@@ -56,6 +56,9 @@ const JUMP: f64 = 0.5;
 /// On such a way no part turns by more in a step, radians.
 const STRIDE: f64 = 0.2;
 
+/// A frame jumps to another posture that the target could have if that is so much better.
+const BETTER: f64 = 0.9;
+
 /// What is solved one after the other: frames, and what leads to them.
 enum Step {
     /// A frame of the motion.
@@ -190,6 +193,9 @@ impl Plan {
     }
 
     /// The target's motion, from the start's frames or from rest.
+    ///
+    /// A limb that is led against a limit may stay there when the way back is on the other side. So with limits the
+    /// motion is solved without them first, and each frame is also tried from the nearest of that.
     pub(super) fn solve(
         &self,
         target: Humanoid<'_>,
@@ -199,6 +205,9 @@ impl Plan {
         times: &[f64],
         progress: &mut dyn FnMut(),
     ) -> Motion {
+        let open = Options { limits: false, ..options };
+        let free = (options.limits && start.is_none())
+            .then(|| self.solve(target, open, None, None, times, &mut || {}));
         let steps = self.steps(times.len(), start.is_some());
         let targets = self.targets(target, &steps, feet);
         let rules = Rules { limits: options.limits, tolerance: 1e-6 };
@@ -218,6 +227,14 @@ impl Plan {
                     tracker.descend(&mut scratch, &[], frame, &mut answer);
                 }
                 continue;
+            }
+            if let (Some(free), Step::Frame(of)) = (&free, step) {
+                let mut other = FrameAnswer::start(&free.frames[*of]);
+                tracker.unwind(&mut other.coordinates);
+                tracker.descend(&mut scratch, &[], frame, &mut other);
+                if other.minimised() < BETTER * answer.minimised() {
+                    answer = other;
+                }
             }
             let lost = matches!(answer.status, FrameStatus::Uncertain | FrameStatus::Infeasible);
             if lost && answer.minimised() > 4.0 * before + 0.01 {
