@@ -95,6 +95,15 @@ pub fn read(
     })
 }
 
+/// What a table of samples says.
+struct Samples {
+    rotations: Vec<Quat>,
+    takes: Vec<u32>,
+    names: Vec<String>,
+    thinned: f64,
+    chart: Option<Chart>,
+}
+
 impl Reader<'_> {
     /// The limit whose keys are in a table.
     pub(super) fn limit(&mut self, top: &Fields<'_>, name: String) -> Option<LearnedLimit> {
@@ -122,18 +131,10 @@ impl Reader<'_> {
         }
         let keys = ["packed", "rotations", "takes", "names", "thinned", "axes"];
         let samples = self.table_of(top, "samples", &keys)?;
-        let (rotations, takes, names, thinned, chart) = self.samples(&samples)?;
-        let takes_names = names;
+        let Samples { rotations, takes, names, thinned, chart } = self.samples(&samples)?;
         let (known, learned) = learned.unzip();
-        let about = About {
-            name,
-            child: child?.text,
-            reference,
-            source,
-            population,
-            frames,
-            takes: takes_names,
-        };
+        let about =
+            About { name, child: child?.text, reference, source, population, frames, takes: names };
         let settings = settings?;
         let ground = match chart {
             Some(chart) => {
@@ -252,12 +253,7 @@ impl Reader<'_> {
         Some((known, learned))
     }
 
-    /// Rotations, takes, their names, the spacing, and the axes of the map.
-    #[allow(clippy::type_complexity)]
-    fn samples(
-        &mut self,
-        fields: &Fields<'_>,
-    ) -> Option<(Vec<Quat>, Vec<u32>, Vec<String>, f64, Option<Chart>)> {
+    fn samples(&mut self, fields: &Fields<'_>) -> Option<Samples> {
         let rotations = match (fields.get("packed"), fields.get("rotations")) {
             (Some(node), Some(_)) => {
                 self.exclusive(node, "packed", "rotations");
@@ -330,7 +326,7 @@ impl Reader<'_> {
                 Some(Chart::of_sides([left?, right?]))
             }
         };
-        Some((rotations, takes, names, thinned, chart))
+        Some(Samples { rotations, takes, names, thinned, chart })
     }
 
     /// Rotations in base64.
