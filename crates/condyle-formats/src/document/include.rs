@@ -114,7 +114,7 @@ impl Loader<'_> {
 }
 
 /// A path that a text gives relative to its own folder, relative to the document's folder.
-fn beside(from: &str, name: &str) -> String {
+pub(super) fn beside(from: &str, name: &str) -> String {
     let name = name.replace('\\', "/");
     let folder = from.rsplit_once('/').map_or("", |(folder, _)| folder);
     let whole =

@@ -20,6 +20,7 @@
 mod chart;
 mod lattice;
 mod learned;
+mod outer;
 mod packed;
 mod projection;
 
@@ -305,6 +306,10 @@ impl Field {
     }
 
     fn projected(&self, q: Quat, inward: Quat, distance: f64) -> Quat {
+        self.projected_on(self.valid(), q, inward, distance)
+    }
+
+    fn projected_on(&self, spline: &[f32], q: Quat, inward: Quat, distance: f64) -> Quat {
         let same = |q: Quat| {
             let q = q.normalized();
             if (self.chart.outward(inward)).dot(q) < 0.0 { -q } else { q }
@@ -312,7 +317,6 @@ impl Field {
         if distance >= 0.0 || distance.is_nan() {
             return same(q);
         }
-        let spline = self.valid();
         let inside = |p: &Quat| self.lattice.value(spline, *p) >= 0.0;
         let anchor = || {
             let sample = self.known(inward).sample;
