@@ -241,7 +241,7 @@ impl Tracker {
     }
 
     /// Where a joint is at a bound, tries where else it could be.
-    fn cross_bounds(
+    pub(crate) fn cross_bounds(
         &self,
         scratch: &mut Scratch,
         seen: &[Option<[f64; 3]>],

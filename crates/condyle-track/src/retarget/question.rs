@@ -3,7 +3,7 @@
 use super::body::{Anchor, Part, Side};
 use super::feet::Feet;
 use super::sampled::{Sampled, middle, trunk};
-use super::stance::Stance;
+use super::stance::{Stance, arc, unit};
 use super::{Humanoid, Options, Posed, held};
 use crate::answer::FrameAnswer;
 use crate::target::rotation_of;
@@ -123,7 +123,7 @@ impl Plan {
                 frames.iter().map(|frame| Quat::from_mat3(*frame * back)).collect();
             if let Some(end) = target.body.end(part) {
                 let start = target.body.start(part).unwrap_or(anchor);
-                plan.line(target, part, [start, end], sampled, &turns);
+                plan.line(target, part, [start, end], sampled, &turns, [from, to]);
             }
             plan.turns.push(Turn { part, segment: anchor.segment, wanted: turns });
         }
@@ -164,6 +164,7 @@ impl Plan {
         [from, to]: [Anchor; 2],
         sampled: &Sampled,
         turns: &[Quat],
+        stances: [&Stance; 2],
     ) {
         let weight = match part {
             Part::UpperArm(_)
@@ -181,7 +182,12 @@ impl Plan {
             let axes = rotation_of(pose.segment(target.body.get(part)?.segment).linear);
             Some(axes.transpose() * along * (1.0 / along.norm().max(1e-12)))
         };
+        let girdle = match part {
+            Part::Clavicle(side) => girdle(side, sampled, stances),
+            _ => None,
+        };
         let wanted = match (part, sampled.lines.get(&part)) {
+            _ if girdle.is_some() => girdle.unwrap_or_default(),
             (Part::Foot(_) | Part::Toes(_) | Part::Clavicle(_), _) => match at_rest() {
                 Some(own) => turns.iter().map(|turn| turn.to_mat3() * own).collect(),
                 None => return,
@@ -232,6 +238,8 @@ impl Plan {
                 let mut other = FrameAnswer::start(&free.frames[*of]);
                 tracker.unwind(&mut other.coordinates);
                 tracker.descend(&mut scratch, &[], frame, &mut other);
+                // Three angles may name the free one's posture in a way that limits forbid.
+                tracker.cross_bounds(&mut scratch, &[], frame, &mut other);
                 if other.minimised() < BETTER * answer.minimised() {
                     answer = other;
                 }
@@ -350,6 +358,28 @@ impl Plan {
         }));
         targets
     }
+}
+
+/// Where a collar bone points: as far from where it rests in the chest as the source's, along the shortest arc.
+///
+/// How it turns about its own length is left out. Collar bones lie in different directions in different skeletons,
+/// so that the axial turn of one would move the end of another.
+fn girdle(side: Side, sampled: &Sampled, stances: [&Stance; 2]) -> Option<Vec<Vec3>> {
+    let rest = |stance: &Stance| {
+        let [a, b] =
+            [Part::Clavicle(side), Part::UpperArm(side)].map(|part| stance.points.get(&part));
+        let along = *b? - *a?;
+        (along.norm() > 1e-9).then(|| stance.axes.transpose() * unit(along))
+    };
+    let [theirs, own] = stances.map(rest);
+    let (theirs, own) = (theirs?, own?);
+    let chests = sampled.turned.get(&Part::Chest)?;
+    let lines = sampled.lines.get(&Part::Clavicle(side))?;
+    let wanted = chests.iter().zip(lines).map(|(chest, line)| {
+        let now = chest.transpose() * *line;
+        *chest * (arc(theirs, now) * own)
+    });
+    Some(wanted.collect())
 }
 
 /// The rotations that a neck of several bones and its head have together; none of a neck of one bone.
