@@ -214,6 +214,7 @@ impl Plan {
         let open = Options { limits: false, ..options };
         let free = (options.limits && start.is_none())
             .then(|| self.solve(target, open, None, None, times, &mut || {}));
+        let first = (!options.limits && start.is_none()).then(|| self.first(target)).flatten();
         let steps = self.steps(times.len(), start.is_some());
         let targets = self.targets(target, &steps, feet);
         let rules = Rules { limits: options.limits, tolerance: 1e-6 };
@@ -225,18 +226,26 @@ impl Plan {
             if let Some(own) = start.and_then(|start| start.frames.get(frame)) {
                 answer.coordinates.clone_from(own);
             }
+            match (step, &first) {
+                (Step::Way { from: None, .. }, Some(_)) => continue,
+                (Step::Frame(0), Some(first)) => answer.coordinates.clone_from(first),
+                _ => {}
+            }
             let before = answer.minimised();
             tracker.descend(&mut scratch, &[], frame, &mut answer);
+            // Without limits nothing is at a bound.
+            tracker.cross_bounds(&mut scratch, &[], frame, &mut answer);
             if matches!(step, Step::Way { .. }) {
                 let last = matches!(steps.get(frame + 1), Some(Step::Frame(_)));
-                if last && tracker.unwind(&mut answer.coordinates) {
+                // Frames keep the names that the first one gives its postures.
+                if last && tracker.rename(&mut answer.coordinates) {
                     tracker.descend(&mut scratch, &[], frame, &mut answer);
                 }
                 continue;
             }
             if let (Some(free), Step::Frame(of)) = (&free, step) {
                 let mut other = FrameAnswer::start(&free.frames[*of]);
-                tracker.unwind(&mut other.coordinates);
+                tracker.rename(&mut other.coordinates);
                 tracker.descend(&mut scratch, &[], frame, &mut other);
                 // Three angles may name the free one's posture in a way that limits forbid.
                 tracker.cross_bounds(&mut scratch, &[], frame, &mut other);
@@ -255,6 +264,24 @@ impl Plan {
             progress();
         }
         Motion { times: times.to_vec(), frames }
+    }
+
+    /// The posture of the first frame within limits, by way from rest: where a motion without limits begins.
+    ///
+    /// From a posture in which an arm hangs it can be raised in either direction of its plane of elevation; an elevation
+    /// below 0 fits as well, but not what a rhythm makes of it.
+    fn first(&self, target: Humanoid<'_>) -> Option<Vec<f64>> {
+        let steps = self.steps(1, false);
+        let targets = self.targets(target, &steps, None);
+        let rules = Rules { limits: true, tolerance: 1e-6 };
+        let tracker = Tracker::new(target.model.with_locked(held::held(target)), targets, rules);
+        let mut scratch = Scratch::new(&tracker);
+        let mut answer = FrameAnswer::start(&tracker.defaults);
+        for step in 0..steps.len() {
+            tracker.descend(&mut scratch, &[], step, &mut answer);
+            tracker.cross_bounds(&mut scratch, &[], step, &mut answer);
+        }
+        answer.coordinates.iter().all(|value| value.is_finite()).then_some(answer.coordinates)
     }
 
     /// All frames, with ways from rest and across jumps unless each has a start of its own.
