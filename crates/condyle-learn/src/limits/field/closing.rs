@@ -15,7 +15,7 @@ use super::super::cloud::{counts, typical_spacing};
 use super::layer::{evened, extremes, local_scale, surface, thickness, unseen, volume};
 use super::nearest::{Ball, Nearest, Nodes};
 use condyle_math::Quat;
-use condyle_model::limit::field::{Ground, Lattice, Settings};
+use condyle_model::limit::field::{Boundary, Ground, Lattice, Settings};
 
 /// What was learned of a cloud, at the nodes and in sum.
 #[derive(Clone, Debug)]
@@ -24,6 +24,8 @@ pub(super) struct Closing {
     pub(super) outer: Vec<f32>,
     /// The same with holes carved; `None` if there are none.
     pub(super) carved: Option<Vec<f32>>,
+    /// Places on the boundary of what is valid.
+    pub(super) boundary: Boundary,
     /// The sample that is nearest to each node.
     pub(super) samples: Vec<u32>,
     /// How many samples are within two spacings of each sample.
@@ -101,9 +103,11 @@ pub(super) fn closing(ground: &Ground, lattice: &Lattice) -> Closing {
             (Some(carved), total - left, holes)
         }
     };
+    let boundary = boundary(&nodes, carved.as_ref().unwrap_or(&outer));
     Closing {
         outer,
         carved,
+        boundary,
         samples: near.ball,
         counts,
         spacing,
@@ -114,6 +118,35 @@ pub(super) fn closing(ground: &Ground, lattice: &Lattice) -> Closing {
         volumes: [bare_volume, total, hollow_volume],
         holes,
     }
+}
+
+/// Places on the zero set of a distance, one on each edge between nodes that it cuts, and the nearest to each node.
+fn boundary(nodes: &Nodes<'_>, distance: &[f32]) -> Boundary {
+    let edge = nodes.lattice.edge;
+    let mut places = vec![];
+    for (node, q) in nodes.rotations.iter().enumerate() {
+        let Some(q) = q else { continue };
+        // What is beyond the half turns is there under the other sign.
+        if q.w < -0.1 {
+            continue;
+        }
+        for other in [node + 1, node + edge, node + edge * edge] {
+            let Some(Some(p)) = nodes.rotations.get(other) else { continue };
+            let (Some(a), Some(b)) = (distance.get(node), distance.get(other)) else { continue };
+            if (*a >= 0.0) != (*b >= 0.0) {
+                places.push(between(*q, *p, f64::from(a / (a - b))));
+            }
+        }
+    }
+    let balls: Vec<Ball> = places.iter().map(|q| Ball::new(*q, 0.0)).collect();
+    let nearest = nodes.nearest(&balls, seeds(nodes.lattice, &places)).ball;
+    Boundary::new(nodes.lattice, &places, &nearest)
+}
+
+/// A part of the way from one rotation to one close by.
+pub(super) fn between(q: Quat, p: Quat, part: f64) -> Quat {
+    let (q, p) = (q.to_array(), p.to_array());
+    Quat::from(std::array::from_fn(|i| q[i] + part * (p[i] - q[i]))).normalized()
 }
 
 fn seeds<'a>(lattice: &'a Lattice, at: &'a [Quat]) -> impl Iterator<Item = (usize, u32)> + 'a {

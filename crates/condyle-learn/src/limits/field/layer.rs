@@ -8,8 +8,8 @@
 //! half a spacing over the signed distances takes most of that away; where the boundary is curved or has an edge it
 //! also moves it inward, and a constant gives back the volume.
 
+use super::closing::between;
 use super::nearest::{Ball, NONE, Nearest, Nodes};
-use condyle_math::Quat;
 use condyle_model::limit::field::Lattice;
 
 /// Of the volume that is missing, the share that the layer gives back: what is in the rarest gaps, far inside, is
@@ -146,8 +146,7 @@ pub(super) fn extremes(
                 continue;
             }
             let part = f64::from((radius - a) / (b - a));
-            let (q, p) = (q.to_array(), p.to_array());
-            let at = Quat::from(std::array::from_fn(|i| q[i] + part * (p[i] - q[i]))).normalized();
+            let at = between(*q, *p, part);
             let at = at.to_array().map(|c| c as f32);
             let mut best = (f32::NEG_INFINITY, NONE);
             let around = [node, node + stride].into_iter().flat_map(|n| {

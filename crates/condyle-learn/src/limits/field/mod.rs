@@ -124,6 +124,6 @@ fn grid(ground: &Ground) -> Grid {
         valid: (outer - hollow) / all,
         holes: holes.collect(),
     };
-    let closing::Closing { outer, carved, samples: near, counts, .. } = found;
-    Grid { lattice, outer, carved, near, counts, learned }
+    let closing::Closing { outer, carved, samples: near, counts, boundary, .. } = found;
+    Grid { lattice, outer, carved, near, counts, boundary, learned }
 }

@@ -5,6 +5,7 @@
 //! Ground -> distances at nodes  condyle-learn      what no empty ball covers, with a layer, holes carved
 //!        -> a smooth function   chart, lattice     a cubic spline over all rotations
 //! rotation -> Answer            projection         state, distance, nearest valid rotation, evidence
+//!                               boundary           where its search begins
 //! ```
 //!
 //! Distances are angles of rotation in radians, positive inside, and go on outside everywhere. `q` and `-q` give the same
@@ -17,12 +18,14 @@
 //!
 //! The distance is that to what is valid: negative in holes too.
 
+mod boundary;
 mod chart;
 mod lattice;
 mod learned;
 mod packed;
 mod projection;
 
+pub use boundary::Boundary;
 pub use chart::Chart;
 pub use lattice::Lattice;
 pub use learned::{About, LearnedLimit};
@@ -177,6 +180,8 @@ pub struct Grid {
     pub near: Vec<u32>,
     /// How many samples are within two spacings of each sample, itself among them.
     pub counts: Vec<u32>,
+    /// Places on the boundary of what is valid.
+    pub boundary: Boundary,
     /// What was learned, in numbers.
     pub learned: Learned,
 }
@@ -192,6 +197,9 @@ pub struct Field {
     counts: Vec<u32>,
     outer: Vec<f32>,
     carved: Option<Vec<f32>>,
+    /// For each cell of the lattice whether a hole matters in it.
+    hollow: Vec<bool>,
+    boundary: Boundary,
     learned: Learned,
 }
 
@@ -199,16 +207,20 @@ impl Field {
     /// The field of distances at nodes.
     #[must_use]
     pub fn new(ground: Arc<Ground>, grid: Grid) -> Self {
-        let Grid { lattice, outer, carved, near, counts, learned } = grid;
+        let Grid { lattice, outer, carved, near, counts, boundary, learned } = grid;
+        let outer = lattice.coefficients(&outer);
+        let carved = carved.map(|values| lattice.coefficients(&values));
         Self {
             samples: ground.samples.iter().map(|q| ground.chart.inward(*q)).collect(),
             near,
             counts,
-            outer: lattice.coefficients(&outer),
-            carved: carved.map(|values| lattice.coefficients(&values)),
+            hollow: carved.as_ref().map_or(vec![], |carved| lattice.differing(&outer, carved)),
+            outer,
+            carved,
             chart: ground.chart,
             ground,
             lattice,
+            boundary,
             learned,
         }
     }
@@ -257,7 +269,10 @@ impl Field {
         if distance >= 0.0 {
             return State::Valid;
         }
-        let hole = self.carved.is_some() && self.lattice.value(&self.outer, q) >= 0.0;
+        // Elsewhere both splines have the same coefficients.
+        let hole = self.carved.is_some()
+            && self.lattice.cells(q).any(|cell| self.hollow.get(cell) == Some(&true))
+            && self.lattice.value(&self.outer, q) >= 0.0;
         if hole { State::Unknown } else { State::Invalid }
     }
 
@@ -275,6 +290,15 @@ impl Field {
     #[must_use]
     pub fn evidence(&self, q: Quat) -> Evidence {
         self.known(self.chart.inward(q))
+    }
+
+    /// [`Field::state`] and [`Field::evidence`] at once.
+    #[inline]
+    #[must_use]
+    pub fn state_with_evidence(&self, q: Quat) -> (State, f64, Evidence) {
+        let q = self.chart.inward(q);
+        let distance = self.lattice.value(self.valid(), q);
+        (self.judged(q, distance), distance, self.known(q))
     }
 
     fn known(&self, q: Quat) -> Evidence {
@@ -313,13 +337,20 @@ impl Field {
             return same(q);
         }
         let spline = self.valid();
+        let start = self.boundary.nearest(&self.lattice, inward);
+        if let Some(start) = start {
+            if let Some(found) = projection::approach(&self.lattice, spline, inward, start) {
+                return self.chart.outward(found).normalized();
+            }
+        }
         let inside = |p: &Quat| self.lattice.value(spline, *p) >= 0.0;
         let anchor = || {
             let sample = self.known(inward).sample;
             let near = self.samples.get(sample).copied().filter(inside);
             near.or_else(|| self.samples.iter().copied().find(inside))
         };
-        let Some(mut found) = projection::project(&self.lattice, spline, inward, anchor) else {
+        let found = projection::project(&self.lattice, spline, inward, start, anchor);
+        let Some(mut found) = found else {
             return same(q);
         };
         // Back and forth between the axes rounds; what then is outside by that is moved in.
