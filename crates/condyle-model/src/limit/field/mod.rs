@@ -193,6 +193,8 @@ pub struct Field {
     chart: Chart,
     lattice: Lattice,
     samples: Vec<Quat>,
+    /// The same, to find the nearest.
+    small: Vec<[f32; 4]>,
     near: Vec<u32>,
     counts: Vec<u32>,
     outer: Vec<f32>,
@@ -210,8 +212,10 @@ impl Field {
         let Grid { lattice, outer, carved, near, counts, boundary, learned } = grid;
         let outer = lattice.coefficients(&outer);
         let carved = carved.map(|values| lattice.coefficients(&values));
+        let samples: Vec<Quat> = ground.samples.iter().map(|q| ground.chart.inward(*q)).collect();
         Self {
-            samples: ground.samples.iter().map(|q| ground.chart.inward(*q)).collect(),
+            small: samples.iter().map(|q| q.to_array().map(|c| c as f32)).collect(),
+            samples,
             near,
             counts,
             hollow: carved.as_ref().map_or(vec![], |carved| lattice.differing(&outer, carved)),
@@ -302,17 +306,14 @@ impl Field {
     }
 
     fn known(&self, q: Quat) -> Evidence {
-        let (mut best, mut sample, mut last) = (-1.0, 0, u32::MAX);
+        let small = q.to_array().map(|c| c as f32);
+        let (mut best, mut sample) = (-1.0, 0);
         for node in self.lattice.corners(q) {
-            let Some(&index) = self.near.get(node) else { continue };
-            if index == last {
-                continue;
-            }
-            last = index;
-            let Some(p) = self.samples.get(index as usize) else { continue };
-            let dot = q.dot(*p).abs();
+            let index = self.near.get(node).copied().unwrap_or(u32::MAX) as usize;
+            let Some(p) = self.small.get(index) else { continue };
+            let dot = boundary::dot(p, &small);
             if dot > best {
-                (best, sample) = (dot, index as usize);
+                (best, sample) = (dot, index);
             }
         }
         let angle = self.samples.get(sample).map_or(PI, |p| q.angle_to(*p));
@@ -337,22 +338,20 @@ impl Field {
             return same(q);
         }
         let spline = self.valid();
-        let start = self.boundary.nearest(&self.lattice, inward);
-        if let Some(start) = start {
-            if let Some(found) = projection::approach(&self.lattice, spline, inward, start) {
-                return self.chart.outward(found).normalized();
-            }
-        }
+        let starts = self.boundary.starts(&self.lattice, inward);
         let inside = |p: &Quat| self.lattice.value(spline, *p) >= 0.0;
         let anchor = || {
             let sample = self.known(inward).sample;
             let near = self.samples.get(sample).copied().filter(inside);
             near.or_else(|| self.samples.iter().copied().find(inside))
         };
-        let found = projection::project(&self.lattice, spline, inward, start, anchor);
-        let Some(mut found) = found else {
+        let found = projection::project(&self.lattice, spline, inward, starts, anchor);
+        let Some((mut found, sure)) = found else {
             return same(q);
         };
+        if sure {
+            return self.chart.outward(found).normalized();
+        }
         // Back and forth between the axes rounds; what then is outside by that is moved in.
         for _ in 0..8 {
             let outward = self.chart.outward(found).normalized();

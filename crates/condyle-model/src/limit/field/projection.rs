@@ -68,7 +68,7 @@ fn landed(lattice: &Lattice, spline: &[f32], mut q: Quat, steps: usize) -> Optio
 /// The nearest rotation inside to `from` that is outside, from a place near it on the boundary; `None` if steps do not
 /// settle, or lead away.
 #[inline]
-pub(super) fn approach(lattice: &Lattice, spline: &[f32], from: Quat, start: Quat) -> Option<Quat> {
+fn approach(lattice: &Lattice, spline: &[f32], from: Quat, start: Quat) -> Option<Quat> {
     let mut at = start;
     // Moving by δ along a boundary of curvature κ turns what is left of the way along it by (1 + κ·distance) δ; most
     // boundaries are convex, with κ of about 1.
@@ -105,32 +105,50 @@ pub(super) fn approach(lattice: &Lattice, spline: &[f32], from: Quat, start: Qua
     None
 }
 
-/// The nearest rotation inside, of `from` that is outside, from a place on the boundary if there is one.
-/// `anchor` gives a rotation inside.
+/// The nearest rotation inside, of `from` that is outside, and whether it is inside by more than what rounding moves.
+/// `starts` are places near the boundary; `anchor` gives a rotation inside.
+#[inline]
 pub(super) fn project(
     lattice: &Lattice,
     spline: &[f32],
     from: Quat,
-    start: Option<Quat>,
+    starts: [Option<Quat>; 3],
     anchor: impl FnOnce() -> Option<Quat>,
-) -> Option<Quat> {
-    let start = start
-        .and_then(|start| landed(lattice, spline, start, 12))
-        .or_else(|| landed(lattice, spline, from, 12));
-    let (mut at, mut slope) = match start {
+) -> Option<(Quat, bool)> {
+    let mut best: Option<(Quat, bool)> = None;
+    for start in starts.into_iter().flatten() {
+        let found = match approach(lattice, spline, from, start) {
+            Some(found) => Some((found, true)),
+            None => landed(lattice, spline, start, 12)
+                .map(|landed| (descended(lattice, spline, from, landed), false)),
+        };
+        let nearer = |p: Quat| best.is_none_or(|(q, _)| from.dot(p).abs() > from.dot(q).abs());
+        best = found.filter(|(p, _)| nearer(*p)).or(best);
+    }
+    if best.is_some() {
+        return best;
+    }
+    let landed = match landed(lattice, spline, from, 12) {
         Some(found) => found,
         None => {
             let found = crossing(lattice, spline, from, anchor()?);
             (found, tangent(found, lattice.value_and_slope(spline, found).1))
         }
     };
+    Some((descended(lattice, spline, from, landed), false))
+}
+
+/// From a rotation on the boundary and the slope there, along the boundary while that comes nearer to `from`.
+#[cold]
+fn descended(lattice: &Lattice, spline: &[f32], from: Quat, landed_at: (Quat, Vec3)) -> Quat {
+    let (mut at, mut slope) = landed_at;
     let mut nearness = from.dot(at).abs();
     let mut share = 1.0;
-    for _ in 0..8 {
+    for _ in 0..40 {
         let to = towards(at, from);
         let along = to - slope * (to.dot(slope) / slope.norm_squared().max(1e-12));
         // Half a thousandth of the way: what is left to gain is a ten-millionth of it.
-        if along.norm_squared() < 2.5e-7 * to.norm_squared().max(1e-6) || share < 0.05 {
+        if along.norm_squared() < 2.5e-7 * to.norm_squared().max(1e-6) || share < 0.002 {
             break;
         }
         let next = landed(lattice, spline, turned(at, along * share), 3);
@@ -142,7 +160,7 @@ pub(super) fn project(
             None => share *= 0.4,
         }
     }
-    Some(at)
+    at
 }
 
 /// The last rotation inside on the way from `inside` to `outside`.
