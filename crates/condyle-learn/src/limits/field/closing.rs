@@ -81,7 +81,7 @@ pub(super) fn closing(ground: &Ground, lattice: &Lattice) -> Closing {
         Some(gap) => gap,
         None if surface > 0.0 => {
             let missing = extreme / samples.len() as f64;
-            thickness(&nodes, &bare, &near, &local, missing, 1.5 * spacing)
+            thickness(&nodes, (bare_volume, &bare), &near, &local, missing, 1.5 * spacing)
         }
         None => 0.0,
     };

@@ -6,28 +6,30 @@
 //!
 //! The outermost samples lie at depths that differ by chance, so the surface is rough over about a spacing. A Gaussian of
 //! half a spacing over the signed distances takes most of that away; where the boundary is curved or has an edge it
-//! also moves it inward, and a constant gives back the volume.
+//! also moves it inward. Half of what a second one would take is given back, and a constant gives back the volume.
 
 use super::closing::between;
 use super::nearest::{Ball, NONE, Nearest, Nodes};
 use condyle_model::limit::field::Lattice;
 
-/// Of the volume that is missing, the share that the layer gives back: what is in the rarest gaps, far inside, is
-/// not worth as much outside. With it the volumes of twelve shapes are 0.98 to 1.02 of the true ones.
-const SHARE: f64 = 0.95;
+/// Of the thickness that gives the volume back, the share that is taken: nodes count what is cut by halves, and what is
+/// missing in the deepest gaps is not worth as much farther out. With it volumes are within 2 % of the true ones.
+const SHARE: f64 = 0.94;
 /// The deviation of the Gaussian, in spacings.
 const EVEN: f64 = 0.5;
+/// Of what a second Gaussian takes away, the share that is given back: that is edges and curvature more than chance.
+const EDGES: f32 = 0.5;
 
-/// The mean thickness of the layer about a closing, from signed distances `bare` to its boundary.
+/// The mean thickness of the layer about a closing, from its volume in rad³ and signed distances `bare` to its boundary.
 pub(super) fn thickness(
     nodes: &Nodes<'_>,
-    bare: &[f32],
+    (inner, bare): (f64, &[f32]),
     near: &Nearest,
     local: &[f64],
     missing: f64,
     most: f64,
 ) -> f64 {
-    let target = volume(nodes, bare) / (1.0 - missing.min(0.5));
+    let target = inner / (1.0 - missing.min(0.5));
     let local: Vec<f32> = near
         .ball
         .iter()
@@ -53,6 +55,8 @@ pub(super) fn evened(nodes: &Nodes<'_>, distance: &[f32], spacing: f64) -> Vec<f
     }
     let total = volume(nodes, distance);
     let mut even = smoothed(nodes.lattice, distance, passes);
+    let again = smoothed(nodes.lattice, &even, passes);
+    even.iter_mut().zip(again).for_each(|(once, twice)| *once += EDGES * (*once - twice));
     let moved =
         |by: f64| sum(nodes, even.iter().map(|d| d + by as f32), |d| share(nodes, d)) < total;
     let by = halved(-0.3, 0.3, 14, moved) as f32;
