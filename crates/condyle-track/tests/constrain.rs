@@ -1,13 +1,13 @@
 //! The nearest legal motion, on motions whose answer is known.
 
 use condyle_math::{Quat, Vec3};
-use condyle_model::component::{Ball, JointCone, Swinging};
+use condyle_model::component::{Ball, HalfSpace, JointCone, RelativePosition, Swinging};
 use condyle_model::limit::{Cone, ConePoint, Projection, Range};
 use condyle_model::model::{Closure, Condition};
 use condyle_model::{CoordinateKind, Law, Model, ModelBuilder};
 use condyle_motion::Motion;
 use condyle_track::constrain::{Constrained, Fate, Pace, constrain};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 const RATE: f64 = 120.0;
 
@@ -256,4 +256,28 @@ fn a_frame_without_numbers_is_left_alone() {
     assert_eq!(answer.fates, [Fate::Kept, Fate::Left, Fate::Moved]);
     assert_eq!(answer.motion.frames[2], [0.0, 1.0]);
     assert!(run(&model, &Motion::default()).motion.frames.is_empty());
+}
+
+/// A limit between two segments of a figure leaves all coordinates that it does not move as they were.
+#[test]
+fn what_a_limit_does_not_move_stays_to_the_bit() {
+    let mut b = ModelBuilder::new("figure");
+    let arm = b.segment("arm", None);
+    let other = b.segment("other", None);
+    b.hinge("shoulder", arm, "lift", Vec3::X);
+    b.hinge("elsewhere", other, "turn", Vec3::Z);
+    let set = b.joint_set("limits");
+    let depth = RelativePosition { reference: false, point: -Vec3::Y, along: vec![Vec3::Z] };
+    let depth = b.component(set, "depth", Law::RelativePosition(depth), vec![arm.into()]);
+    // The hand is at most 0.5 m behind the shoulder: a lift of 30 degrees.
+    let wall = Law::HalfSpace(HalfSpace::new(vec![-1.0], 0.5).unwrap());
+    b.component(set, "wall", wall, vec![depth]);
+    let model = b.build().unwrap();
+    let mut asked: Vec<Vec<f64>> = (0..40).map(|i| vec![0.1 * f64::from(i), 0.7]).collect();
+    // Where the limit has no slope only another start leads on: the defaults.
+    asked.push(vec![FRAC_PI_2, 0.7]);
+    let answer = run(&model, &at_rate(asked));
+    assert!(answer.motion.frames.iter().all(|frame| frame[1] == 0.7));
+    assert!(answer.motion.frames.iter().all(|frame| frame[0].sin() < 0.5 + 1e-6));
+    assert!(answer.changed() > 10);
 }

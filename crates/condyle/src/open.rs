@@ -174,6 +174,17 @@ pub fn content_as(
     zeros: Zeros,
     assumed: &Assumed,
 ) -> Result<Read<Content>, OpenError> {
+    content_within(path, wanted, zeros, assumed, None)
+}
+
+/// As [`content_as`], with the text of what a document may include as [`SKELETON`].
+fn content_within(
+    path: &Path,
+    wanted: Option<ContentKind>,
+    zeros: Zeros,
+    assumed: &Assumed,
+    skeleton: Option<&str>,
+) -> Result<Read<Content>, OpenError> {
     #[cfg(feature = "document")]
     if wanted.is_none_or(|kind| kind == ContentKind::Model)
         && !is_standard_input(path)
@@ -195,7 +206,10 @@ pub fn content_as(
     };
     let found = named.or_else(|| Format::of_bytes(&bytes).filter(fits));
     let format = found.ok_or_else(no_format)?;
-    let mut include = |name: &str| included(path, name);
+    let mut include = |name: &str| match skeleton {
+        Some(text) if name == SKELETON => Ok(text.to_owned()),
+        _ => included(path, name),
+    };
     let read = match format.id {
         Id::Amc => return take::take(path, &bytes, assumed).map(|read| named_after(path, read)),
         #[cfg(feature = "glb")]
@@ -339,6 +353,14 @@ fn included(from: &Path, name: &str) -> Result<String, String> {
     {
         return Ok(text.to_owned());
     }
+    // A skeleton of another format, as the text that says the same.
+    #[cfg(feature = "document")]
+    if Format::of_ending(&ending(&path))
+        .is_some_and(|f| f.id != Id::Document && f.reads.contains(&ContentKind::Model))
+    {
+        let model = model(&path).map_err(|error| error.to_string())?.value;
+        return Ok(condyle_formats::document::write(&model));
+    }
     let bytes = bytes(&path).map_err(|error| match error.cause {
         Cause::Io(error) => {
             #[cfg(feature = "document")]
@@ -378,6 +400,44 @@ pub fn model(path: &Path) -> Result<Read<Model>, OpenError> {
         Content::Animation(animation) => Some(animation.model),
         _ => None,
     })
+}
+
+/// What a document includes to get the skeleton of whatever motion it is used with: such a document puts limits on
+/// the joints of foreign skeletons.
+pub const SKELETON: &str = "skeleton";
+
+/// Whether a file is a document that includes [`SKELETON`].
+#[cfg(feature = "document")]
+pub fn is_binding(path: &Path) -> bool {
+    let document = Format::of_ending(&ending(path)).is_some_and(|f| f.id == Id::Document);
+    let text = if document { bytes(path).ok() } else { None };
+    text.and_then(|text| utf8(&text).ok().map(condyle_formats::document::includes))
+        .is_some_and(|all| all.iter().any(|(_, name)| name == SKELETON))
+}
+
+/// Opens a document that includes [`SKELETON`] with a skeleton.
+///
+/// # Errors
+/// As [`content`].
+#[cfg(feature = "document")]
+pub fn bound(path: &Path, skeleton: &Model) -> Result<Read<Model>, OpenError> {
+    let text = condyle_formats::document::write(skeleton);
+    let wanted = Some(ContentKind::Model);
+    let read = content_within(path, wanted, Zeros::Told, &source::assumed(), Some(text.as_str()))?;
+    match read.value {
+        Content::Document(document) => Ok(Read { value: document.model, warnings: read.warnings }),
+        _ => Err(failed(path, Cause::Format { wanted })),
+    }
+}
+
+/// The bytes of a BVH file with another motion of its skeleton, all else to the letter.
+///
+/// # Errors
+/// As [`content`].
+pub fn bvh_with(path: &Path, motion: &Motion) -> Result<Vec<u8>, OpenError> {
+    let bytes = bytes(path)?;
+    let text = condyle_formats::bvh::with_motion(&bytes, &source::assumed(), motion);
+    text.map(String::into_bytes).map_err(|error| failed(path, Cause::Content { error, text: None }))
 }
 
 /// Opens a model as [`model`] does, with the motion that its file holds; without frames if it holds none.

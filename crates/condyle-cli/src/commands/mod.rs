@@ -2,6 +2,7 @@
 
 mod bench;
 mod check;
+mod constrain;
 mod convert;
 mod demo;
 mod diff;
@@ -93,6 +94,8 @@ enum Command {
     Track(track::Track),
     /// Scale a model to the person of a static trial.
     Scale(scale::Scale),
+    /// Find the legal motion nearest to a given one, and what limits it broke.
+    Constrain(constrain::Constrain),
     /// Write a file in another format.
     Convert(convert::Convert),
     /// Filter, fill, resample, cut or turn a recording or a motion.
@@ -185,6 +188,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
         Command::Render(command) => command.run(),
         Command::Track(command) => command.run(),
         Command::Scale(command) => command.run(),
+        Command::Constrain(command) => command.run(),
         Command::Convert(command) => command.run(),
         Command::Upkeep(command) => command.run(),
         Command::Diff(command) => command.run(),

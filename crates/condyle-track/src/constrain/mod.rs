@@ -45,8 +45,11 @@
 //! # Ok::<(), condyle_diagnostics::Error>(())
 //! ```
 
+mod change;
 mod figure;
 mod seam;
+
+pub use change::{Change, changes};
 
 use condyle_model::Model;
 use condyle_motion::Motion;

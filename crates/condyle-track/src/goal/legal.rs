@@ -80,7 +80,12 @@ fn searched(open: &Model, program: &Program, asked: &[f64]) -> Option<Vec<f64>> 
         Ok(()) => posed.effective().to_vec(),
         Err(_) => within.clone(),
     };
-    let defaults = within_ranges(open, &open.defaults());
+    // What limits do not move stays as it is asked for, wherever a descent starts.
+    let mut defaults = within.clone();
+    let all = within_ranges(open, &open.defaults());
+    for place in question.coordinates.iter().map(|&id| open.stored_range(id)) {
+        defaults[place.clone()].copy_from_slice(&all[place]);
+    }
     // Where a row has no slope, as that of a straight arm, only another start leads on; and what is far
     // away may be nearer on another way.
     let drawn = (1..=DRAWN).map(|start| start_of(&question, start));
