@@ -424,10 +424,25 @@ pub fn bound(path: &Path, skeleton: &Model) -> Result<Read<Model>, OpenError> {
     let text = condyle_formats::document::write(skeleton);
     let wanted = Some(ContentKind::Model);
     let read = content_within(path, wanted, Zeros::Told, &source::assumed(), Some(text.as_str()))?;
-    match read.value {
-        Content::Document(document) => Ok(Read { value: document.model, warnings: read.warnings }),
-        _ => Err(failed(path, Cause::Format { wanted })),
+    let Content::Document(document) = read.value else {
+        return Err(failed(path, Cause::Format { wanted }));
+    };
+    let model = document.model;
+    // A coordinate that the skeleton does not have moves nothing: its joint is misspelled.
+    let set =
+        |model: &Model, id| model.joint_sets()[model.coordinate(id).joint_set.index()].name.clone();
+    let named = |model: &Model, id| format!("{}.{}", set(model, id), model.coordinate(id).name);
+    let known: Vec<String> = skeleton.coordinate_ids().map(|id| named(skeleton, id)).collect();
+    let new = model.coordinate_ids().map(|id| named(&model, id)).find(|own| !known.contains(own));
+    if let Some(own) = new {
+        let message = format!("the skeleton has no coordinate `{own}`");
+        let help = did_you_mean(&own, known.iter().map(String::as_str), || {
+            "`condyle info` lists them".to_owned()
+        });
+        let error = Error::new("binding/coordinate", message).with_help(help);
+        return Err(failed(path, Cause::Content { error, text: None }));
     }
+    Ok(Read { value: model, warnings: read.warnings })
 }
 
 /// The bytes of a BVH file with another motion of its skeleton, all else to the letter.
