@@ -99,8 +99,7 @@ pub(super) const OBJECTS: &str =
 impl<'a> Array<'a> {
     /// Reads the head of an array, and checks that all of its numbers are there.
     pub(super) fn read(name: &str, content: Cow<'a, [u8]>) -> Result<Self, Error> {
-        let wrong =
-            |what: &str| Error::new("smpl/array", format!("the array `{name:.60}` {what}"));
+        let wrong = |what: &str| Error::new("smpl/array", format!("the array `{name:.60}` {what}"));
         let missing = || wrong("has no head of NumPy");
         if !content.starts_with(b"\x93NUMPY") {
             return Err(missing());
@@ -133,8 +132,11 @@ impl<'a> Array<'a> {
             ('O', _) => {
                 let help = "write it again in Python with allow_pickle=True for reading, and as plain arrays: \
                             numpy.savez(OUT, **DICTIONARY)";
-                return Err(Error::new("smpl/objects", format!("the array `{name:.60}` {OBJECTS}"))
-                    .with_help(help));
+                return Err(Error::new(
+                    "smpl/objects",
+                    format!("the array `{name:.60}` {OBJECTS}"),
+                )
+                .with_help(help));
             }
             ('f', Some(size @ (2 | 4 | 8))) => (Kind::Float, size),
             ('i', Some(size @ (1 | 2 | 4 | 8))) => (Kind::Signed, size),
@@ -221,8 +223,9 @@ impl<'a> Array<'a> {
     pub(super) fn rows(&self, along: impl Into<Option<usize>>) -> Result<Rows<'_, 'a>, Error> {
         let along = along.into();
         let first = along.map_or(0, |along| along + 1);
-        let wrong =
-            |what: String| Error::new("smpl/array", format!("the array `{:.60}` {what}", self.name));
+        let wrong = |what: String| {
+            Error::new("smpl/array", format!("the array `{:.60}` {what}", self.name))
+        };
         if !self.is_numeric() {
             return Err(wrong("holds texts, not numbers".to_owned()));
         }
@@ -237,7 +240,8 @@ impl<'a> Array<'a> {
         let inner = self.shape.get(first..).unwrap_or_default();
         let width = inner.iter().try_fold(1usize, |n, side| n.checked_mul(*side));
         if width.is_none_or(|width| width > MOST_COLUMNS) {
-            let message = format!("has a shape of {:?}: more than {MOST_COLUMNS} columns", self.shape);
+            let message =
+                format!("has a shape of {:?}: more than {MOST_COLUMNS} columns", self.shape);
             return Err(wrong(message));
         }
         let mut columns = if width == Some(0) { vec![] } else { vec![0usize] };
@@ -319,7 +323,12 @@ mod tests {
 
     #[test]
     fn halves_are_those_of_ieee_754() {
-        let known = [(0x3c00, 1.0), (0xc000, -2.0), (0x3555, 0.333_251_953_125), (0x0001, 5.960_464_477_539_063e-8)];
+        let known = [
+            (0x3c00, 1.0),
+            (0xc000, -2.0),
+            (0x3555, 0.333_251_953_125),
+            (0x0001, 5.960_464_477_539_063e-8),
+        ];
         for (bits, value) in known {
             assert_eq!(half(bits), value);
         }
@@ -344,7 +353,10 @@ mod tests {
         for (head, said) in [
             ("{'descr': [('a', '<f8')], 'fortran_order': False, 'shape': (1,), }", "records"),
             ("{'descr': '<c16', 'fortran_order': False, 'shape': (1,), }", "`<c16`"),
-            ("{'descr': '<f8', 'fortran_order': False, 'shape': (4294967296, 4294967296, 9), }", "shape"),
+            (
+                "{'descr': '<f8', 'fortran_order': False, 'shape': (4294967296, 4294967296, 9), }",
+                "shape",
+            ),
             ("{'descr': '<f8', 'fortran_order': False, 'shape': (2,), }", "only 8 bytes"),
             ("{'descr': '<f8'}", "does not say"),
         ] {

@@ -1,7 +1,7 @@
 //! A body of SMPL as its authors give it: where its joints are, and how the shape moves them.
 
 use super::array::{Array, Rows};
-use super::layout::Arrays;
+use super::layout::{Arrays, BODY, ROOT, WHOLE};
 use super::rest::{Joint, Rest};
 use super::tree::Tree;
 use condyle_diagnostics::{Diagnostic, Error, Read, Warnings};
@@ -21,7 +21,10 @@ pub fn is_body(bytes: &[u8]) -> bool {
 }
 
 fn holds_body(arrays: &Arrays<'_>) -> bool {
-    arrays.has(&["v_template", "kintree_table", "j_regressor", "j"]) && !arrays.has(&["poses"])
+    // Poses may come with the corners of their body.
+    let poses = [WHOLE.as_slice(), &ROOT, &BODY];
+    arrays.has(&["v_template", "kintree_table", "j_regressor", "j"])
+        && !poses.iter().any(|names| arrays.has(names))
 }
 
 /// Where the joints of a body are: `J = J_regressor · v_template`, and for each number of the shape

@@ -6,11 +6,12 @@ use super::tree::Tree;
 use condyle_diagnostics::{Diagnostic, Error, Warnings};
 
 /// All joints in one array.
-const WHOLE: [&str; 5] = ["poses", "fullpose", "full_pose", "pose", "thetas"];
+pub(super) const WHOLE: [&str; 5] = ["poses", "fullpose", "full_pose", "pose", "thetas"];
 /// The pelvis alone.
-const ROOT: [&str; 4] = ["root_orient", "global_orient", "root_pose", "root_orientation"];
+pub(super) const ROOT: [&str; 4] =
+    ["root_orient", "global_orient", "root_pose", "root_orientation"];
 /// The joints from the hips to the wrists, or to the hands of SMPL.
-const BODY: [&str; 2] = ["pose_body", "body_pose"];
+pub(super) const BODY: [&str; 2] = ["pose_body", "body_pose"];
 const JAW: [&str; 2] = ["pose_jaw", "jaw_pose"];
 const EYES: [&str; 2] = ["pose_eye", "eye_pose"];
 const LEFT_EYE: [&str; 2] = ["leye_pose", "left_eye_pose"];
@@ -169,7 +170,8 @@ pub(super) fn layout<'a>(
         }
     }
     if uneven {
-        let message = format!("the arrays have different numbers of frames: the first {frames} are read");
+        let message =
+            format!("the arrays have different numbers of frames: the first {frames} are read");
         warnings.push(Diagnostic::warning("smpl/frames", message));
     }
     let mut rate = None;

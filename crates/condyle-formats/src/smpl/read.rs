@@ -115,7 +115,8 @@ fn frames(
         return Err(Error::new("smpl/size", message).with_help(help));
     }
     let rate = layout.rate.or(assumed.rate).unwrap_or_else(|| {
-        let message = format!("the file does not say how many frames are in a second: {USUAL_RATE}");
+        let message =
+            format!("the file does not say how many frames are in a second: {USUAL_RATE}");
         let said = Diagnostic::warning("smpl/rate", message);
         warnings.push(said.with_help("give it with --frame-rate"));
         USUAL_RATE

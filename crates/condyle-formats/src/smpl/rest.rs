@@ -120,7 +120,8 @@ impl Rest {
             .collect();
         if !missing.is_empty() {
             let message = format!("{} has no {}", self.name, missing.join(", "));
-            let help = "give a body of SMPL (.npz), or a model whose bones have names that are known";
+            let help =
+                "give a body of SMPL (.npz), or a model whose bones have names that are known";
             return Err(Error::new("smpl/rest", message).with_help(help));
         }
         let mut places: Vec<Vec3> = Vec::with_capacity(joints.len());
@@ -196,7 +197,8 @@ fn next_known(
     let mut at = from;
     for steps in 1..joints.len() {
         // Of several children the first whose place is known, else the first.
-        let children = || (0..joints.len()).filter(|i| joints.get(*i).is_some_and(|j| j.1 == Some(at)));
+        let children =
+            || (0..joints.len()).filter(|i| joints.get(*i).is_some_and(|j| j.1 == Some(at)));
         if let Some(place) = children().find_map(|child| known.get(child).copied().flatten()) {
             return Some((steps, place));
         }
