@@ -88,7 +88,7 @@ fn rest_of(path: &Path) -> Result<Read<Rest>, OpenError> {
 /// The joints of a model at its defaults by the names of SMPL, in SMPL's posture at rest.
 ///
 /// Segments that bear the names of SMPL's joints are those; else the parts of the body are recognised
-/// ([`recognise`]). Where arms or legs point more than 30° away from where they do in SMPL's posture, or elbows are bent, they
+/// ([`recognise`]), and the pelvis is put above the middle of the hips. Where arms or legs point more than 30° away from where they do in SMPL's posture, or elbows are bent, they
 /// are stretched, each bone as long as it is.
 ///
 /// # Errors
@@ -144,11 +144,25 @@ fn rest_of_model(model: &Model) -> Result<Read<Rest>, Error> {
         let place = named(&joint).or_else(|| spine_joint(&spine, &joint)).or_else(by_part);
         joints.extend(place.map(|place| (joint, place)));
     }
+    if named("pelvis").is_none() || named("left_hip").is_none() {
+        between_hips(&mut joints);
+    }
     if let Some(said) = stretched(&mut joints) {
         warnings.push(Diagnostic::note("smpl/posture", said));
     }
     let name = if model.name().is_empty() { "the model" } else { model.name() };
     Ok(Read { value: Rest::new(&format!("`{name}`"), joints), warnings })
+}
+
+/// Puts the joint of the pelvis above the middle of the hips, where SMPL has it: that of a model of bones may be at
+/// the front of the pelvis.
+fn between_hips(joints: &mut [(String, Vec3)]) {
+    let find = |name: &str| joints.iter().find(|(joint, _)| joint == name).map(|(_, at)| *at);
+    let (Some(left), Some(right)) = (find("left_hip"), find("right_hip")) else { return };
+    let middle = (left + right) * 0.5;
+    if let Some((_, pelvis)) = joints.iter_mut().find(|(joint, _)| joint == "pelvis") {
+        *pelvis = Vec3::new(middle.x, pelvis.y, middle.z);
+    }
 }
 
 /// From the axes of a model to those of SMPL: y up, looking along +z.
@@ -340,6 +354,8 @@ mod tests {
             assert!((of("middle3") - of("middle1")).x * sign > 0.04);
             assert!((of("thumb1") - of("wrist")).z > 0.0);
         }
+        let hips = (at("left_hip") + at("right_hip")) * 0.5;
+        assert!((at("pelvis") - hips).x.abs() < 1e-12 && (at("pelvis") - hips).z.abs() < 1e-12);
         let heights = ["pelvis", "spine1", "spine2", "spine3", "neck", "head"].map(|j| at(j).y);
         assert!(heights.windows(2).all(|pair| pair[1] > pair[0] + 0.03), "{heights:?}");
         assert!((at("left_hip").y - at("left_ankle").y) > 0.7);
