@@ -284,8 +284,9 @@ impl Builder<'_> {
                         Reads::From(surface, others) => {
                             let path = self.model.path_to_root(id).skip(1);
                             let path = path.take_while(|&above| Some(above) != surface);
-                            let mut links: Vec<usize> =
-                                path.filter_map(|above| self.link_of.get(&above).copied()).collect();
+                            let mut links: Vec<usize> = path
+                                .filter_map(|above| self.link_of.get(&above).copied())
+                                .collect();
                             links.reverse();
                             let above =
                                 links.iter().flat_map(|&link| self.tree.links[link].steps.iter());
@@ -317,7 +318,7 @@ impl Builder<'_> {
         let turns = axes.into_iter().zip([turn_x, turn_y, turn_z]);
         steps.extend(turns.map(|(axis, value)| Step::Turn { axis, value }));
         steps.extend(after);
-        let what = listed(names);
+        let what = names.join(", ");
         (steps, Some(Measured { at, rest, slots, drivers, components, what }))
     }
 
