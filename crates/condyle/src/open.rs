@@ -21,6 +21,8 @@ use condyle_formats::poses::{Poses, Resolved};
 use condyle_formats::skeleton::Assumed;
 use condyle_formats::text::utf8;
 use condyle_formats::{Content, ContentKind, FORMATS, Format, Id};
+#[cfg(feature = "document")]
+use condyle_learn::limits::LearnedLimit;
 use condyle_model::Model;
 #[cfg(feature = "poses")]
 use condyle_motion::Keys;
@@ -587,6 +589,18 @@ pub fn settled(
 pub fn goals(path: &Path) -> Result<Read<GoalList>, OpenError> {
     only(path, ContentKind::Goals, Zeros::Told, |content| match content {
         Content::Goals(list) => Some(list),
+        _ => None,
+    })
+}
+
+/// Opens a learned limit.
+///
+/// # Errors
+/// As [`content`].
+#[cfg(feature = "document")]
+pub fn limit(path: &Path) -> Result<Read<LearnedLimit>, OpenError> {
+    only(path, ContentKind::Limit, Zeros::Told, |content| match content {
+        Content::Limit(limit) => Some(*limit),
         _ => None,
     })
 }
