@@ -1,5 +1,7 @@
 //! Files by path, with errors and warnings that carry the path.
 
+#[cfg(feature = "smpl")]
+mod body;
 mod parts;
 mod source;
 mod take;
@@ -31,6 +33,8 @@ use source::{bytes, nameless_format};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+#[cfg(feature = "smpl")]
+pub use body::body_is;
 pub use parts::{MotionParts, motion_parts};
 pub use source::{
     animation_is, assumed, files_read, is_standard_input, nameless_is, skeletons_are,
@@ -211,6 +215,11 @@ fn content_within(
         _ => included(path, name),
     };
     let read = match format.id {
+        #[cfg(feature = "smpl")]
+        Id::Smpl => {
+            let read = named_after(path, body::opened(path, &bytes, assumed)?);
+            return fitting(path, wanted, read);
+        }
         Id::Amc => return take::take(path, &bytes, assumed).map(|read| named_after(path, read)),
         #[cfg(feature = "glb")]
         Id::Glb | Id::Gltf => scene_of(path, &bytes, assumed),
@@ -240,7 +249,15 @@ fn content_within(
     if format.id == Id::Asf {
         skeleton_is(path);
     }
-    let read = named_after(path, read);
+    fitting(path, wanted, named_after(path, read))
+}
+
+/// What was read, if it is what was wanted.
+fn fitting(
+    path: &Path,
+    wanted: Option<ContentKind>,
+    read: Read<Content>,
+) -> Result<Read<Content>, OpenError> {
     match wanted {
         Some(kind) if !read.value.holds(kind) => {
             let message =
