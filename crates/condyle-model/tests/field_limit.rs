@@ -3,7 +3,7 @@
 use condyle_math::{Affine, Quat, Vec3};
 use condyle_model::component::{FieldLimit, Reflection, RelativeOrientation};
 use condyle_model::limit::field::{
-    About, Chart, Field, Grid, Ground, Learned, LearnedLimit, Settings, State,
+    About, Boundary, Chart, Field, Grid, Ground, Learned, LearnedLimit, Settings, State,
 };
 use condyle_model::limit::{Limit, field::Lattice};
 use condyle_model::{Jacobian, Law, Mode, Model, ModelBuilder, Pose, Program, SegmentId};
@@ -40,7 +40,9 @@ fn ball(ground: &Arc<Ground>) -> Field {
         valid: 0.02,
         holes: vec![],
     };
-    let grid = Grid { lattice, outer, carved: Some(carved), near, counts: vec![1], learned };
+    let boundary = Boundary::default();
+    let (carved, counts) = (Some(carved), vec![1]);
+    let grid = Grid { lattice, outer, carved, near, counts, boundary, learned };
     Field::new(ground.clone(), grid)
 }
 
