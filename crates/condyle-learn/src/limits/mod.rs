@@ -9,8 +9,12 @@
 mod cloud;
 pub mod field;
 pub mod herda2003;
+mod left_out;
 mod principal;
 mod spread;
+mod uniform;
 
 pub use cloud::{Cloud, Gathered, SPACING};
 pub use field::{Answer, Field, Settings, State};
+pub use left_out::{LeftOut, independent, left_out, percentile};
+pub use uniform::uniform;
