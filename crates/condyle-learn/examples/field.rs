@@ -7,7 +7,7 @@
 #[path = "../tests/field/shapes.rs"]
 mod shapes;
 
-use condyle_learn::limits::{Cloud, Field, Settings, State};
+use condyle_learn::limits::{Cloud, Settings, State, learn};
 use condyle_math::Quat;
 use shapes::{Random, SHAPES, quantile};
 use std::hint::black_box;
@@ -40,7 +40,7 @@ fn main() {
             let samples = shape.samples(count, &mut random);
             let start = Instant::now();
             let cloud = Cloud::gather(&[&samples], 0.0).expect("samples");
-            let field = Field::learn(cloud, &Settings::default()).expect("settings");
+            let field = learn(&cloud, &Settings::default()).expect("settings");
             let seconds = start.elapsed().as_secs_f64();
             let accuracy = |points: &[(Quat, bool)]| {
                 let right = points
@@ -84,7 +84,7 @@ fn speed() {
     let mut random = Random(7);
     let samples = SHAPES[5].samples(5000, &mut random);
     let cloud = Cloud::gather(&[&samples], 0.0).expect("samples");
-    let field = Field::learn(cloud, &Settings::default()).expect("settings");
+    let field = learn(&cloud, &Settings::default()).expect("settings");
     let all: Vec<Quat> = (0..200_000).map(|_| random.rotation()).collect();
     let outside: Vec<Quat> =
         all.iter().copied().filter(|q| field.state(*q).0 == State::Invalid).collect();

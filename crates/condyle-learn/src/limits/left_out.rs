@@ -12,7 +12,7 @@
 //! as if p of the volume were missed all around; for independent samples it is what leaving single samples out
 //! gives. What lies farther from all samples than 95 % of the left-out rotations inside C did is a hole.
 
-use super::{Cloud, Field, Settings};
+use super::{Cloud, Settings, learn};
 use condyle_diagnostics::Error;
 use condyle_math::Quat;
 
@@ -82,7 +82,7 @@ pub fn independent(take: &[Quat]) -> bool {
 /// `spacing` is that of the clouds, in radians.
 ///
 /// # Errors
-/// Those of [`Cloud::gather`] and [`Field::learn`].
+/// Those of [`Cloud::gather`] and [`learn`].
 pub fn left_out(takes: &[&[Quat]], spacing: f64, settings: &Settings) -> Result<LeftOut, Error> {
     let (parts, whole_takes) = parts(takes);
     let bare =
@@ -99,7 +99,7 @@ pub fn left_out(takes: &[&[Quat]], spacing: f64, settings: &Settings) -> Result<
         else {
             continue;
         };
-        let field = Field::learn(cloud, &bare)?;
+        let field = learn(&cloud, &bare)?;
         for q in asked.rotations() {
             let distance = field.distance(*q);
             distances.push(distance);
@@ -110,7 +110,7 @@ pub fn left_out(takes: &[&[Quat]], spacing: f64, settings: &Settings) -> Result<
     }
     distances.sort_by(f64::total_cmp);
     nearest.sort_by(f64::total_cmp);
-    let whole = Field::learn(Cloud::gather(takes, spacing)?, &bare)?;
+    let whole = learn(&Cloud::gather(takes, spacing)?, &bare)?;
     let learned = whole.learned();
     let outside = distances.iter().filter(|d| **d < 0.0).count() as f64;
     let outside = outside / distances.len().max(1) as f64;

@@ -2,13 +2,13 @@
 
 mod shapes;
 
-use condyle_learn::limits::{Cloud, Field, Settings, State};
+use condyle_learn::limits::{Cloud, Field, Settings, State, learn};
 use condyle_math::{Quat, Vec3};
 use shapes::{Random, SHAPES, Shape, quantile};
 
 fn learned(shape: &Shape, count: usize, random: &mut Random) -> Field {
     let samples = shape.samples(count, random);
-    Field::learn(Cloud::gather(&[&samples], 0.0).unwrap(), &Settings::default()).unwrap()
+    learn(&Cloud::gather(&[&samples], 0.0).unwrap(), &Settings::default()).unwrap()
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn the_volume_is_the_true_one_in_any_axes() {
     let shares = turns.map(|turn| {
         let turned: Vec<Quat> = samples.iter().map(|q| turn * *q).collect();
         let cloud = Cloud::gather(&[&turned], 0.0).unwrap();
-        let field = Field::learn(cloud, &Settings::default()).unwrap();
+        let field = learn(&cloud, &Settings::default()).unwrap();
         // The standard deviation of the share is 0.6 % of it.
         let all = 300_000;
         let valid = (0..all).filter(|_| field.state(random.rotation()).0 == State::Valid).count();
@@ -103,7 +103,7 @@ fn the_middle_of_a_removed_ball_is_unknown_and_what_is_deep_inside_is_not() {
     let samples: Vec<Quat> =
         SHAPES[1].samples(5000, &mut random).into_iter().filter(|q| !removed(*q)).collect();
     let cloud = Cloud::gather(&[&samples], 0.0).unwrap();
-    let field = Field::learn(cloud, &Settings::default()).unwrap();
+    let field = learn(&cloud, &Settings::default()).unwrap();
     assert!(field.learned().spacing < 7f64.to_radians());
     for _ in 0..500 {
         let middle = centre * Quat::exp(random.direction() * (12f64.to_radians() * random.unit()));

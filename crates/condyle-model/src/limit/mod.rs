@@ -18,9 +18,11 @@
 //! [`Ellipse`](crate::component::Ellipse), [`HalfSpace`](crate::component::HalfSpace).
 
 mod cone;
+pub mod field;
 mod range;
 
 pub use cone::{Cone, ConeError, ConePoint, Legal, Projected, Projection};
+pub use field::{Field, LearnedLimit};
 pub use range::Range;
 
 /// The most numbers that one limit bounds together.

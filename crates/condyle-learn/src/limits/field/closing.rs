@@ -13,13 +13,10 @@
 //!
 //! A spacing is (volume of C / N)^(1/3); R = 5 spacings, within 20 and 50 degrees.
 
-use super::super::Cloud;
 use super::super::cloud::{counts, typical_spacing};
-use super::Settings;
-use super::chart::Chart;
-use super::lattice::Lattice;
 use super::nearest::{Ball, NONE, Nearest, Nodes};
 use condyle_math::Quat;
+use condyle_model::limit::field::{Ground, Lattice, Settings};
 
 /// What was learned of a cloud, at the nodes and in sum.
 #[derive(Clone, Debug)]
@@ -46,23 +43,23 @@ pub(super) struct Closing {
 /// A little more than every angle there is, for what has no boundary.
 const EVERYWHERE: f32 = 4.0;
 
-pub(super) fn closing(
-    cloud: &Cloud,
-    chart: &Chart,
-    lattice: &Lattice,
-    settings: &Settings,
-) -> Closing {
+/// Learns from the samples of a ground. What is known already is not found anew.
+pub(super) fn closing(ground: &Ground, lattice: &Lattice) -> Closing {
+    let Ground { settings, chart, known, .. } = ground;
     let rotations = lattice.nodes();
     let nodes = Nodes::new(lattice, &rotations);
-    let samples: Vec<Quat> = cloud.rotations().iter().map(|q| chart.inward(*q)).collect();
+    let samples: Vec<Quat> = ground.samples.iter().map(|q| chart.inward(*q)).collect();
     let points: Vec<Ball> = samples.iter().map(|q| Ball::new(*q, 0.0)).collect();
     let near = nodes.nearest(&points, seeds(lattice, &samples));
 
     let mut spacing = typical_spacing(&samples);
     let [least, most] = settings.radius;
     let mut ball = (5.0 * spacing).clamp(least, most);
+    if let Some(known) = known {
+        (spacing, ball) = (known.spacing, known.radius);
+    }
     let mut inner = inside(&nodes, &near, ball);
-    for _ in 0..2 {
+    for _ in 0..if known.is_some() { 0 } else { 2 } {
         let volume = volume(&nodes, &inner);
         spacing = (volume / samples.len() as f64).cbrt().clamp(1e-4, 1.0);
         let better = (5.0 * spacing).clamp(least, most);
@@ -77,7 +74,7 @@ pub(super) fn closing(
     let (bare_volume, surface) = (volume(&nodes, &inner), surface(&nodes, &bare));
     let extremes = extremes(&nodes, &near, &points, ball);
     let extreme = unseen(&extremes);
-    let gap = match settings.gap {
+    let gap = match known.map(|known| known.gap).or(settings.gap) {
         Some(gap) => gap,
         None if surface > 0.0 => {
             (extreme / samples.len() as f64 * bare_volume / surface).min(1.5 * spacing)
