@@ -259,6 +259,7 @@
 //! | [`legal`] | poses within all limits |
 //! | [`picture`], [`render`] | still pictures of models, and of any surfaces and lines |
 //! | [`posing`] | the pose nearest to rest that meets goals |
+//! | [`learning`] | limits of joints from recordings, and what they say |
 //! | [`check`] | findings about a model, or about a motion of it |
 //! | [`formats`], [`open`], [`encode`] | bytes to values and back, by path or not |
 //! | [`shipped`], [`scene`] | models that come along, animated scenes |
@@ -268,6 +269,8 @@
 #[cfg(feature = "formats")]
 pub mod encode;
 mod figure;
+#[cfg(feature = "document")]
+pub mod learning;
 pub mod legal;
 pub mod matching;
 #[cfg(feature = "formats")]

@@ -7,6 +7,8 @@ mod demo;
 mod diff;
 mod fk;
 mod info;
+mod learn;
+mod limits;
 mod pose;
 mod render;
 mod scale;
@@ -93,6 +95,10 @@ enum Command {
     Track(track::Track),
     /// Scale a model to the person of a static trial.
     Scale(scale::Scale),
+    /// Learn from recordings which rotations of a joint are possible.
+    Learn(learn::Learn),
+    /// Ask learned limits about rotations, and about the mobility of a joint.
+    Limits(limits::Limits),
     /// Write a file in another format.
     Convert(convert::Convert),
     /// Filter, fill, resample, cut or turn a recording or a motion.
@@ -185,6 +191,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
         Command::Render(command) => command.run(),
         Command::Track(command) => command.run(),
         Command::Scale(command) => command.run(),
+        Command::Learn(command) => command.run(),
+        Command::Limits(command) => command.run(),
         Command::Convert(command) => command.run(),
         Command::Upkeep(command) => command.run(),
         Command::Diff(command) => command.run(),

@@ -40,6 +40,8 @@ pub struct LeftOut {
     pub nearest: Vec<f64>,
     /// The thickness of the layer that follows, in radians.
     pub gap: f64,
+    /// (volume / number)^(1/3) of all samples, in radians.
+    pub spacing: f64,
     /// From what distance to the nearest sample on a place inside is a hole, in radians.
     pub hole: f64,
 }
@@ -123,6 +125,7 @@ pub fn left_out(takes: &[&[Quat]], spacing: f64, settings: &Settings) -> Result<
         asked: distances.len(),
         outside,
         hole: percentile(&nearest, 0.95).max(size * learned.spacing),
+        spacing: learned.spacing,
         distances,
         nearest,
         gap: gap.min(0.35),
@@ -130,12 +133,11 @@ pub fn left_out(takes: &[&[Quat]], spacing: f64, settings: &Settings) -> Result<
 }
 
 impl LeftOut {
-    /// The settings with which a limit is learned from all takes; `spacing` is that of the density, in radians
-    /// ([`Learned::spacing`](super::field::Learned)).
+    /// The settings with which a limit is learned from all takes; a layer that is given stays.
     #[must_use]
-    pub fn settings(&self, settings: &Settings, spacing: f64) -> Settings {
+    pub fn settings(&self, settings: &Settings) -> Settings {
         let hole = settings.hole.map(|[size, depth]| {
-            let wider = (self.hole / spacing.max(1e-4)).max(size);
+            let wider = (self.hole / self.spacing.max(1e-4)).max(size);
             [wider, depth.max(depth / size * wider)]
         });
         Settings { gap: Some(settings.gap.unwrap_or(self.gap)), hole, ..*settings }

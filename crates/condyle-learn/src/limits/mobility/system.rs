@@ -27,8 +27,8 @@ pub struct InSystem {
 /// let most = 70f64.to_radians();
 /// let inside = |q: Quat| q.angle_to(Quat::IDENTITY) < most;
 /// let expected = (most - most.sin()) / std::f64::consts::PI;
-/// for order in [EulerOrder::YXY, EulerOrder::ZXY, EulerOrder::XYZ] {
-///     let found = in_system(&inside, order, 90);
+/// for order in ["yxy", "zxy", "xyz"] {
+///     let found = in_system(&inside, order.parse::<EulerOrder>().unwrap(), 90);
 ///     assert!((found.share / expected - 1.0).abs() < 0.01, "{found:?}");
 /// }
 /// ```

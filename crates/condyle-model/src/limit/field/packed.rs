@@ -36,7 +36,8 @@ pub fn packed(q: Quat) -> [u16; 3] {
     let mut best = (f64::INFINITY, near);
     for n in 0..27u16 {
         let by = [n % 3, n / 3 % 3, n / 9];
-        let code = std::array::from_fn(|i| (near[i] + by[i].min(65535 - near[i])).saturating_sub(1));
+        let code =
+            std::array::from_fn(|i| (near[i] + by[i].min(65535 - near[i])).saturating_sub(1));
         if let Some(p) = unpacked(code)
             && p.angle_to(q) < best.0
         {
