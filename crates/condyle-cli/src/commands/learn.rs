@@ -183,7 +183,8 @@ impl Limits {
     /// An error about all recordings, with the path of the first.
     fn told<T>(&self, result: Result<T, condyle::Error>) -> Result<T, Failure> {
         let path = self.recordings.first().cloned().unwrap_or_default();
-        result.map_err(|error| OpenError { path, cause: Cause::Content { error, text: None } }.into())
+        result
+            .map_err(|error| OpenError { path, cause: Cause::Content { error, text: None } }.into())
     }
 }
 
@@ -210,9 +211,8 @@ fn takes_json(takes: &[Take], counts: &[u32]) -> Value {
 const OFFSETS: [f64; 9] = [0.0, 1.0, 2.0, 3.0, 5.0, 7.5, 10.0, 15.0, 20.0];
 
 fn left_out_json(left: &LeftOut, gap: f64) -> Value {
-    let curve = OFFSETS.map(|offset| {
-        json!({ "offset_deg": offset, "inside": left.held(offset.to_radians()) })
-    });
+    let curve = OFFSETS
+        .map(|offset| json!({ "offset_deg": offset, "inside": left.held(offset.to_radians()) }));
     json!({
         "parts": left.parts,
         "whole_takes": left.whole_takes,

@@ -112,7 +112,8 @@ impl Query {
     fn warn(&self, asked: &condyle::learn::frames::Orientated, table: &Table) {
         let path = self.rotations.display();
         if let Some(first) = asked.unusable.first() {
-            let line = std::fs::read(&self.rotations).ok().and_then(|b| csv::line_of_row(&b, *first));
+            let line =
+                std::fs::read(&self.rotations).ok().and_then(|b| csv::line_of_row(&b, *first));
             let at = line.map_or(String::new(), |line| format!(":{line}"));
             say(&format!(
                 "warning: {path}{at}: {} of {} rows are no rotations: not finite, or of length 0; their cells stay blank{}",
@@ -191,8 +192,10 @@ fn counts(answers: &[Option<Answered>]) -> [usize; 4] {
 
 fn summary(answers: &[Option<Answered>]) -> String {
     let [valid, invalid, unknown, none] = counts(answers);
-    let mut text =
-        format!("{} rotations: {valid} valid, {invalid} invalid, {unknown} unknown", answers.len() - none);
+    let mut text = format!(
+        "{} rotations: {valid} valid, {invalid} invalid, {unknown} unknown",
+        answers.len() - none
+    );
     if none > 0 {
         text.push_str(&format!("; {none} rows are no rotation"));
     }

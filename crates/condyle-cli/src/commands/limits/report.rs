@@ -45,7 +45,12 @@ enum Mirror {
 fn axis(text: &str) -> Result<Axis, String> {
     let parts: Vec<f64> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
     match parts[..] {
-        [x, y, z] if Vec3::new(x, y, z).norm() > 1e-9 && x.is_finite() && y.is_finite() && z.is_finite() => {
+        [x, y, z]
+            if Vec3::new(x, y, z).norm() > 1e-9
+                && x.is_finite()
+                && y.is_finite()
+                && z.is_finite() =>
+        {
             Ok(Axis { name: text.to_owned(), direction: Vec3::new(x, y, z) })
         }
         _ => Err("give three numbers with commas between, not all 0".to_owned()),
@@ -104,7 +109,10 @@ impl Report {
                 interval.parts
             )
         });
-        text.push_str(&format!("valid are {:.2} % of all rotations{bounds}\n", 1e2 * numbers.share));
+        text.push_str(&format!(
+            "valid are {:.2} % of all rotations{bounds}\n",
+            1e2 * numbers.share
+        ));
         text.push_str(&format!(
             "two valid rotations are up to {:.1}° apart; the middle is {:.1}° from the boundary\n",
             numbers.largest_angle.to_degrees(),
@@ -125,7 +133,9 @@ impl Report {
             })
             .collect();
         text.push_str(&output::columns(&rows));
-        text.push_str("in joint coordinate systems: share, ranges of 99 %, share of the box of all angles\n");
+        text.push_str(
+            "in joint coordinate systems: share, ranges of 99 %, share of the box of all angles\n",
+        );
         let rows: Vec<Vec<String>> = numbers
             .systems
             .iter()
@@ -150,7 +160,8 @@ impl Report {
         if numbers.regions.is_empty() {
             return "no suspected holes, and no thin regions\n".to_owned();
         }
-        let mut text = "to record next: suspected holes, and regions far from all samples\n".to_owned();
+        let mut text =
+            "to record next: suspected holes, and regions far from all samples\n".to_owned();
         let states = versus.map_or(&[][..], |versus| &versus.regions);
         let rows: Vec<Vec<String>> = numbers
             .regions
