@@ -29,6 +29,30 @@ fn main() {
                 c3d::from_bytes(black_box(&bytes)).map(|read| read.value.analog.to_table(0.0));
             assert!(black_box(trial).is_ok());
         }));
+        let mut values = vec![];
+        rows.push(row("c3d, all channels in their units, into memory used again", &bytes, || {
+            let trial = c3d::from_bytes(black_box(&bytes)).map(|read| read.value);
+            values.clear();
+            if let Ok(trial) = &trial {
+                trial.analog.scaled_to(&mut values);
+            }
+            assert!(black_box(trial).is_ok() && !black_box(&values).is_empty());
+        }));
+        if let Ok(read) = c3d::from_bytes(&bytes) {
+            let (analog, points) = (&read.value.analog, read.value.recording.positions.len());
+            println!("{points} points, {} samples of channels", analog.stored.len());
+            rows.push(row("c3d, channels to their units alone", &bytes, || {
+                values.clear();
+                analog.scaled_to(&mut values);
+                black_box(&values);
+            }));
+            // The bound: what is filled is as large as positions, words, samples and scaled samples.
+            let sizes = [24 * points, 4 * points, 4 * analog.stored.len(), 8 * analog.stored.len()];
+            rows.push(row("c3d, as many bytes of new memory, filled", &bytes, || {
+                let filled: Vec<Vec<u8>> = sizes.iter().map(|&n| vec![black_box(1); n]).collect();
+                black_box(filled);
+            }));
+        }
     }
     for usual in ["knee/opencap4/squats1.trc", "knee/SprintMotion.trc"] {
         if let Some(bytes) = bytes(&path("trc", usual)) {

@@ -22,6 +22,8 @@ use crate::{
 };
 #[cfg(feature = "document")]
 use condyle_learn::frames::Recipe;
+#[cfg(feature = "document")]
+use condyle_learn::limits::{LearnedLimit, herda2003::LearnedSpheres};
 use condyle_model::Model;
 
 /// What a file may hold.
@@ -43,6 +45,8 @@ pub enum ContentKind {
     Goals,
     /// Which markers give the orientation of a segment.
     Recipe,
+    /// Which rotations of a segment in another are possible.
+    Limit,
     /// A scene for viewers.
     Scene,
 }
@@ -60,6 +64,7 @@ impl ContentKind {
             Self::Names => "a table of names",
             Self::Goals => "goals of a pose",
             Self::Recipe => "a recipe",
+            Self::Limit => "a learned limit",
             Self::Scene => "a scene",
         }
     }
@@ -97,6 +102,12 @@ pub enum Content {
     /// Which markers give the orientation of a segment.
     #[cfg(feature = "document")]
     Recipe(Recipe),
+    /// Which rotations of a segment in another are possible.
+    #[cfg(feature = "document")]
+    Limit(Box<LearnedLimit>),
+    /// The same by the method of Herda et al. 2003.
+    #[cfg(feature = "document")]
+    Spheres(Box<LearnedSpheres>),
     /// A setup of inverse kinematics.
     #[cfg(feature = "opensim")]
     Setup(setup::IkSetup),
@@ -134,6 +145,8 @@ impl Content {
             Self::Goals(_) => ContentKind::Goals,
             #[cfg(feature = "document")]
             Self::Recipe(_) => ContentKind::Recipe,
+            #[cfg(feature = "document")]
+            Self::Limit(_) | Self::Spheres(_) => ContentKind::Limit,
             #[cfg(feature = "opensim")]
             Self::Setup(_) | Self::Tasks(_) => ContentKind::Setup,
         }
@@ -221,8 +234,9 @@ pub const FORMATS: &[Format] = &[
             ContentKind::Names,
             ContentKind::Goals,
             ContentKind::Recipe,
+            ContentKind::Limit,
         ],
-        writes: &[ContentKind::Model],
+        writes: &[ContentKind::Model, ContentKind::Limit],
         sniff: |bytes| document::kind(bytes).is_some(),
         read: |bytes, include| {
             let text = utf8(bytes)?;
@@ -231,6 +245,12 @@ pub const FORMATS: &[Format] = &[
                 Some(Kind::Names) => document::names::read(text, include)?.map(Content::Names),
                 Some(Kind::Goals) => document::goals::read(text, include)?.map(Content::Goals),
                 Some(Kind::Recipe) => document::recipe::read(text, include)?.map(Content::Recipe),
+                Some(Kind::Limit) if document::limit::is_of_spheres(text) => {
+                    document::limit::read_spheres(text, include)?
+                        .map(|spheres| Content::Spheres(Box::new(spheres)))
+                }
+                Some(Kind::Limit) => document::limit::read(text, include)?
+                    .map(|limit| Content::Limit(Box::new(limit))),
                 // Those that are no document at all get the message of a model.
                 _ => document::read(text, include)?.map(Content::Document),
             })

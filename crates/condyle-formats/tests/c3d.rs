@@ -177,6 +177,18 @@ fn the_length_of_the_file_decides() {
     }
 }
 
+/// A first frame so late that 32 bits do not hold the last one is no frame's number.
+#[test]
+fn frames_that_cannot_be_counted_are_counted_from_one() {
+    let mut build = Build::new(Processor::Intel, true);
+    build.words(5, "ACTUAL_START_FIELD", &[-1, -1]);
+    let found = read(&build);
+    assert!(found.warned("c3d/first-frame"), "{:?}", found.warnings);
+    assert_eq!((found.value.first_frame, found.value.recording.times[0]), (1, 0.0));
+    let again = c3d::from_bytes(&c3d::write(&found.value).unwrap()).unwrap();
+    assert_eq!(again.value.recording.frames(), found.value.recording.frames());
+}
+
 #[test]
 fn many_points_and_many_frames() {
     let labels: Vec<String> = (0..600).map(|i| format!("marker_{i}")).collect();
@@ -374,6 +386,10 @@ fn what_cannot_be_written_is_refused() {
     let mut trial = c3d::Trial::of(recording());
     trial.columns.pop();
     assert_eq!(c3d::write(&trial).unwrap_err().code(), "c3d/shape");
+    for first_frame in [0, u32::MAX as usize] {
+        let trial = c3d::Trial { first_frame, ..c3d::Trial::of(recording()) };
+        assert_eq!(c3d::write(&trial).unwrap_err().code(), "c3d/too-large");
+    }
     let empty = Recording { times: vec![], positions: vec![], ..recording() };
     assert_eq!(c3d::write(&c3d::Trial::of(empty)).unwrap_err().code(), "c3d/shape");
 }

@@ -58,3 +58,24 @@ fn damaged_files_are_refused() {
     }
     assert_eq!(fbx::from_bytes(&bytes[..bytes.len() / 2]).unwrap_err().code(), "fbx/damaged");
 }
+
+/// The seeds of the fuzz target say one skeleton as text and in both binary forms.
+#[test]
+fn text_and_both_binary_forms_say_the_same() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds/fbx");
+    let read = |name: &str| {
+        let bytes = std::fs::read(folder.join(name)).unwrap();
+        fbx::from_bytes(&bytes).unwrap_or_else(|error| panic!("{name}: {error:?}")).value
+    };
+    let text = read("limb.fbx");
+    for limb in ["upper", "lower"] {
+        assert!(text.model.find_segment(limb).is_ok(), "{limb}");
+    }
+    assert_eq!(read("limb_7400.fbx"), text);
+    assert_eq!(read("limb_7500.fbx"), text);
+    // One second at 30 a second.
+    assert_eq!(text.motion.times.len(), 31);
+    let first = text.motion.frames.first().unwrap();
+    let half = text.motion.at(&text.model, 0.5).unwrap();
+    assert!(first != &half, "the lower limb bends");
+}

@@ -257,6 +257,7 @@
 //! | [`tracking`] | recordings to motions; streams; orientations of inertial sensors |
 //! | [`scaling`] | a model as large as a person |
 //! | [`legal`] | poses within all limits |
+//! | [`limits`] | limits of joints learned from rotations |
 //! | [`picture`], [`render`] | still pictures of models, and of any surfaces and lines |
 //! | [`posing`] | the pose nearest to rest that meets goals |
 //! | [`learning`] | limits of joints from recordings, and what they say |
@@ -272,6 +273,8 @@ mod figure;
 #[cfg(feature = "document")]
 pub mod learning;
 pub mod legal;
+#[cfg(feature = "document")]
+pub mod limits;
 pub mod matching;
 #[cfg(feature = "formats")]
 pub mod open;

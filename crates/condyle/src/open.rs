@@ -22,7 +22,7 @@ use condyle_formats::skeleton::Assumed;
 use condyle_formats::text::utf8;
 use condyle_formats::{Content, ContentKind, FORMATS, Format, Id};
 #[cfg(feature = "document")]
-use condyle_learn::frames::Recipe;
+use condyle_learn::{frames::Recipe, limits::LearnedLimit};
 use condyle_model::Model;
 #[cfg(feature = "poses")]
 use condyle_motion::Keys;
@@ -615,6 +615,31 @@ pub fn recipe(path: &Path) -> Result<Read<Recipe>, OpenError> {
 pub fn goals(path: &Path) -> Result<Read<GoalList>, OpenError> {
     only(path, ContentKind::Goals, Zeros::Told, |content| match content {
         Content::Goals(list) => Some(list),
+        _ => None,
+    })
+}
+
+/// Opens a learned limit.
+///
+/// # Errors
+/// As [`content`].
+#[cfg(feature = "document")]
+pub fn limit(path: &Path) -> Result<Read<LearnedLimit>, OpenError> {
+    only(path, ContentKind::Limit, Zeros::Told, |content| match content {
+        Content::Limit(limit) => Some(*limit),
+        _ => None,
+    })
+}
+
+/// Opens a learned limit of any method.
+///
+/// # Errors
+/// As [`content`].
+#[cfg(feature = "document")]
+pub fn any_limit(path: &Path) -> Result<Read<crate::learning::Limit>, OpenError> {
+    only(path, ContentKind::Limit, Zeros::Told, |content| match content {
+        Content::Limit(limit) => Some(crate::learning::Limit::Field(limit)),
+        Content::Spheres(spheres) => Some(crate::learning::Limit::Spheres(spheres)),
         _ => None,
     })
 }

@@ -132,6 +132,7 @@ impl Convert {
             Content::Document(document) if target.id == Id::Document => {
                 self.document(document)?.into_bytes()
             }
+            Content::Limit(limit) if target.id == Id::Document => encode::limit(target, &limit)?,
             Content::Model(model) if target.id == Id::Document => {
                 document::write(&model).into_bytes()
             }

@@ -72,7 +72,7 @@ impl Query {
         }
         let outputs: Vec<&Path> = self.output.iter().map(PathBuf::as_path).collect();
         output::check_distinct(&[&self.limit, &self.rotations], &outputs)?;
-        let limit = warned(&self.limit, open::limit(&self.limit)?);
+        let limit = warned(&self.limit, open::any_limit(&self.limit)?);
         let mut read = open::table(&self.rotations)?;
         let timed = !read.warnings.iter().any(|said| said.code == "csv/no-time");
         read.warnings.retain(|said| said.code != "csv/no-time");

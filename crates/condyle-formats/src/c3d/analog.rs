@@ -70,18 +70,50 @@ impl Analog {
         stored.map(|&v| (f64::from(v) - known.offset) * known.scale * self.scale).collect()
     }
 
+    /// All samples of all channels in their units, in the order of [`stored`](Self::stored), put behind what is in a
+    /// vector of the caller: one that is used again needs no new memory.
+    ///
+    /// ```
+    /// use condyle_formats::c3d::{Analog, Channel};
+    /// let channel = |scale, offset| Channel { scale, offset, ..Channel::default() };
+    /// let analog = Analog {
+    ///     channels: vec![channel(0.5, 0.0), channel(2.0, 100.0)],
+    ///     scale: 10.0,
+    ///     stored: vec![1.0, 101.0, 2.0, 90.0],
+    ///     ..Analog::default()
+    /// };
+    /// let mut values = vec![];
+    /// analog.scaled_to(&mut values);
+    /// assert_eq!(values, [5.0, 20.0, 10.0, -200.0]);
+    /// ```
+    pub fn scaled_to(&self, values: &mut Vec<f64>) {
+        let width = self.channels.len();
+        if width == 0 {
+            return;
+        }
+        // Short rows are laid end to end, so that the loop over one is long enough for whole registers.
+        let rows = 64usize.div_ceil(width);
+        let laid = |part: fn(&Channel) -> f64| -> Vec<f64> {
+            let of_one = self.channels.iter().map(part);
+            of_one.cycle().take(rows * width).collect()
+        };
+        let (offsets, scales) = (laid(|channel| channel.offset), laid(|channel| channel.scale));
+        let whole = self.stored.len() - self.stored.len() % width;
+        values.reserve(whole);
+        for block in self.stored.get(..whole).unwrap_or_default().chunks(rows * width) {
+            let steps = offsets.iter().zip(&scales);
+            let scaled = block.iter().zip(steps);
+            values.extend(
+                scaled.map(|(&v, (offset, scale))| (f64::from(v) - offset) * scale * self.scale),
+            );
+        }
+    }
+
     /// All channels over time, in their units, the first sample at `start` seconds.
     #[must_use]
     pub fn to_table(&self, start: f64) -> Table {
-        let width = self.channels.len();
-        let mut values = Vec::with_capacity(self.stored.len());
-        for row in self.stored.chunks_exact(width.max(1)) {
-            values.extend(
-                row.iter()
-                    .zip(&self.channels)
-                    .map(|(&v, c)| (f64::from(v) - c.offset) * c.scale * self.scale),
-            );
-        }
+        let mut values = vec![];
+        self.scaled_to(&mut values);
         let rate = if self.rate > 0.0 { self.rate } else { 1.0 };
         Table {
             columns: self.channels.iter().map(|c| c.label.clone()).collect(),

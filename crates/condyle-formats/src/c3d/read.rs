@@ -48,7 +48,14 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Read<Trial>, Error> {
     points.reserve(layout.frames);
     decoder.read(&mut points, &mut analog, unit, up);
 
-    let first = layout::field(&parameters, "ACTUAL_START_FIELD").unwrap_or(header.first).max(1);
+    let mut first = layout::field(&parameters, "ACTUAL_START_FIELD").unwrap_or(header.first).max(1);
+    if first + layout.frames > u32::MAX as usize {
+        // A number of 32 bits has to hold the last frame too, or the file cannot be written again.
+        let message = format!("frame {first} is stated to be the first of {}", layout.frames);
+        let said = Diagnostic::warning("c3d/first-frame", message);
+        warnings.push(said.with_help("frames are counted from 1"));
+        first = 1;
+    }
     let time = |frame: usize| (first - 1 + frame) as f64 / rate;
     let recording = Recording {
         labels: points.labels,

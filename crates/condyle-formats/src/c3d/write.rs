@@ -44,6 +44,10 @@ fn check(trial: &Trial) -> Result<(), Error> {
     if frames == 0 {
         return shape("there are no frames".to_owned());
     }
+    if trial.first_frame == 0 || trial.first_frame > u32::MAX as usize - frames {
+        let message = format!("{frames} frames cannot be counted from {}", trial.first_frame);
+        return Err(too_large(message, "the first frame is 1 or more, the last fits into 32 bits"));
+    }
     let (markers, others) = (recording.labels.len(), trial.others.len());
     let known = trial.columns.iter().all(|column| match *column {
         Column::Marker(index) => index < markers,

@@ -59,7 +59,7 @@ fn axis(text: &str) -> Result<Axis, String> {
 
 /// The field of a file; spheres have no distance.
 fn field(path: &Path) -> Result<Box<LearnedLimit>, Failure> {
-    match warned(path, open::limit(path)?) {
+    match warned(path, open::any_limit(path)?) {
         Limit::Field(limit) => Ok(limit),
         Limit::Spheres(_) => Err(Failure::new(format!(
             "{}: spheres of Herda et al. 2003 have no distance to report: learn the limit with --method closing",

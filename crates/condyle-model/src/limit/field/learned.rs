@@ -72,6 +72,12 @@ impl LearnedLimit {
         self.field.get_or_init(|| (self.make)(&self.ground))
     }
 
+    /// What its file says was learned, without making the field.
+    #[must_use]
+    pub fn stated(&self) -> Option<&Learned> {
+        self.learned.as_ref()
+    }
+
     /// What was learned, in numbers: as its file says, else of the field.
     #[must_use]
     pub fn learned(&self) -> &Learned {
@@ -79,7 +85,7 @@ impl LearnedLimit {
     }
 }
 
-/// The same limit: what it is made of and what is said of it.
+/// Equal are limits of equal ground and description: what it is made of and what is said of it.
 impl PartialEq for LearnedLimit {
     fn eq(&self, other: &Self) -> bool {
         self.about == other.about && self.ground == other.ground
