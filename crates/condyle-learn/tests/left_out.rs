@@ -13,7 +13,8 @@ fn take(number: usize) -> Vec<Quat> {
         .map(|frame| {
             let t = start + 0.02 * f64::from(frame);
             let wave = |rate: f64, phase: f64| (rate * t + phase * number as f64).sin();
-            let turn = Vec3::new(wave(1.0, 0.4), wave(1.618, 1.1), wave(2.236, 2.3)) * (1.15 * most);
+            let turn =
+                Vec3::new(wave(1.0, 0.4), wave(1.618, 1.1), wave(2.236, 2.3)) * (1.15 * most);
             let length = turn.norm();
             Quat::exp(if length > most { turn * (most / length) } else { turn })
         })

@@ -122,7 +122,10 @@ fn a_ball_of_rotations_is_learned_and_asked() {
     }
     near(number(&json["axes"][0]["forward_deg"]), 60.0, 3.0);
     near(number(&json["largest_angle_deg"]), 120.0, 4.0);
-    assert!(number(&json["share_95"]["low"]) < share && number(&json["share_95"]["high"]) > 0.95 * share);
+    assert!(
+        number(&json["share_95"]["low"]) < share
+            && number(&json["share_95"]["high"]) > 0.95 * share
+    );
     near(number(&json["compared"]["in_common"]), 1.0, 1e-12);
     assert_eq!(number(&json["compared"]["largest_distance_deg"]), 0.0);
     let text = folder.condyle(&["limits", "report", "L.toml"]).expect(0);
@@ -156,12 +159,24 @@ fn takes_are_left_out_and_rows_that_are_no_rotations_told() {
     let files = ["take0.csv", "take1.csv", "take2.csv", "take3.csv"];
     let mut learn = vec!["learn", "limits"];
     learn.extend(files);
-    learn.extend(["--joint", "hand", "--reference", "forearm", "-o", "L.toml", "--report", "R.json"]);
+    learn.extend([
+        "--joint",
+        "hand",
+        "--reference",
+        "forearm",
+        "-o",
+        "L.toml",
+        "--report",
+        "R.json",
+    ]);
     let run = folder.condyle(&learn);
     assert!(run.err.contains("take2.csv:602: 2 of 603 rotations are left out"), "{}", run.err);
     assert!(run.err.contains("1 of 603 quaternions are not of length 1"), "{}", run.err);
     let said = run.expect(0);
-    assert!(said.contains("hand in forearm") && said.contains("4 takes left out in turn"), "{said}");
+    assert!(
+        said.contains("hand in forearm") && said.contains("4 takes left out in turn"),
+        "{said}"
+    );
     let report: serde_json::Value = serde_json::from_str(&folder.read("R.json")).expect("JSON");
     assert_eq!(report["takes"][2]["unusable"], 2);
     assert_eq!((&report["takes"][2]["used"], &report["frames"]), (&601.into(), &2403.into()));
@@ -215,11 +230,31 @@ fn what_cannot_be_learned_from_is_refused() {
     let said = folder.condyle(&["learn", "limits", "few.csv", "-o", "L.toml"]).refused();
     assert!(said.contains("neither qx, qy, qz, qw nor sensors"), "{said}");
     folder.write("motion.mot", "walk\nversion=1\nnRows=2\nnColumns=2\ninDegrees=yes\nendheader\ntime\thip_flexion\n0\t10\n1\t20\n");
-    let motion = ["learn", "limits", "motion.mot", "--model", "leg.osim", "--joint", "thigh", "-o", "L.toml"];
+    let motion = [
+        "learn",
+        "limits",
+        "motion.mot",
+        "--model",
+        "leg.osim",
+        "--joint",
+        "thigh",
+        "-o",
+        "L.toml",
+    ];
     let learned = folder.condyle(&motion);
     assert!(learned.err.contains("2 rotations that differ say little"), "{}", learned.err);
     assert_eq!(learned.code, 0, "{}", learned.err);
-    let wrong = ["learn", "limits", "motion.mot", "--model", "leg.osim", "--joint", "thihg", "-o", "L.toml"];
+    let wrong = [
+        "learn",
+        "limits",
+        "motion.mot",
+        "--model",
+        "leg.osim",
+        "--joint",
+        "thihg",
+        "-o",
+        "L.toml",
+    ];
     let said = folder.condyle(&wrong).refused();
     assert!(said.contains("did you mean `thigh`?"), "{said}");
     let recipe = ["learn", "limits", "motion.mot", "--recipe", "hpi", "-o", "L.toml"];
