@@ -184,8 +184,10 @@ fn takes_are_left_out_and_rows_that_are_no_rotations_told() {
     assert_eq!(report["thinned_deg"], 2.0);
     assert!(number(&report["samples"]) < 1600.0, "{report}");
     assert_eq!(report["left_out"]["whole_takes"], true);
-    let inside = number(&report["left_out"]["inside_closing"]);
-    assert!(number(&report["left_out"]["inside_with_offset"]) >= inside && inside > 0.2);
+    // Turns about two axes have no volume, so that all are outside what others show; half are in the layer.
+    assert!(number(&report["left_out"]["inside_closing"]) < 0.2);
+    assert!(number(&report["left_out"]["inside_with_offset"]) >= 0.5);
+    assert!(number(&report["offset_deg"]) >= 2.0);
     // Asked about rows that are none, the others are answered.
     folder.write("asked.csv", "qx,qy,qz,qw\n0,0,0,1\n0,0,0,0\n0,1,0,0\n");
     let run = folder.condyle(&["limits", "query", "L.toml", "asked.csv", "-o", "-"]);
@@ -258,7 +260,7 @@ fn what_cannot_be_learned_from_is_refused() {
     let said = folder.condyle(&wrong).refused();
     assert!(said.contains("did you mean `thigh`?"), "{said}");
     let recipe = ["learn", "limits", "motion.mot", "--recipe", "hpi", "-o", "L.toml"];
-    assert!(folder.condyle(&recipe).refused().contains("did you mean `hip`?"));
+    assert!(folder.condyle(&recipe).refused().contains("shipped are: hip, "));
     let ending = ["learn", "limits", "motion.mot", "-o", "L.json"];
     assert!(folder.condyle(&ending).refused().contains("end it in .toml"));
     folder.condyle(&["limits", "query", "leg.osim", "few.csv"]).refused();

@@ -10,7 +10,8 @@
 //! ```
 //!
 //! as if p of the volume were missed all around; for independent samples it is what leaving single samples out
-//! gives. What lies farther from all samples than 95 % of the left-out rotations inside C did is a hole.
+//! gives. It is at least the spacing to which frames were thinned, so that frames between samples are inside, and at
+//! least so thick that half of the left-out rotations are: of turns about one or two axes V is 0. What lies farther from all samples than 95 % of the left-out rotations inside C did is a hole.
 
 use super::{Cloud, Settings, learn};
 use condyle_diagnostics::Error;
@@ -118,6 +119,9 @@ pub fn left_out(takes: &[&[Quat]], spacing: f64, settings: &Settings) -> Result<
     let outside = outside / distances.len().max(1) as f64;
     let volume = learned.outer * 8.0 * std::f64::consts::PI.powi(2);
     let gap = if learned.surface > 0.0 { outside * volume / learned.surface } else { 0.0 };
+    // Distances rise, so that half of them are at least the middle one.
+    let half = -percentile(&distances, 0.5);
+    let gap = gap.max(half).max(spacing);
     let [size, _] = settings.hole.or(Settings::default().hole).unwrap_or([2.5, 2.0]);
     Ok(LeftOut {
         parts: parts.len(),
