@@ -115,7 +115,7 @@ impl Found {
             for marker in markers {
                 let (label, guess) = labels::label(recipe, recording, marker, subject)?;
                 labels.push(label);
-                found.guesses.extend(guess);
+                found.guesses.extend(guess.filter(|guess| !found.guesses.contains(guess)));
             }
             found.places.push((name, labels));
         }
