@@ -14,6 +14,7 @@ mod info;
 #[cfg(unix)]
 mod kill;
 mod leg;
+mod limits;
 #[cfg(target_os = "linux")]
 mod long;
 #[cfg(unix)]
