@@ -123,7 +123,10 @@ fn model_of(content: Content) -> Model {
 fn model_off(format: &Format) -> f64 {
     let mut numbers = Numbers(7);
     let model = figure(&mut numbers, false);
-    let bytes = encode::model(format, &model).expect("it is plain").value;
+    let bytes = match format.id {
+        Id::Document => document::write(&model).into_bytes(),
+        _ => encode::model(format, &model).expect("it is plain").value,
+    };
     let again = model_of(read(format, &bytes, &Assumed::default()));
     let (one, two) = (Program::compile(&model), Program::compile(&again));
     let names = names(&model);
@@ -224,16 +227,14 @@ fn every_format_that_is_read_and_written_gives_back_what_was_written() {
         let name = format.name;
         let mut numbers = Numbers(3);
         match format.id {
-            Id::Document | Id::Poses => {
+            Id::Poses => {
                 let model = figure(&mut numbers, true);
-                let text = match format.id {
-                    Id::Document => document::write(&model),
-                    _ => exchange::write(&model),
-                };
+                let text = exchange::write(&model);
                 let again = model_of(read(format, text.as_bytes(), &Assumed::default()));
                 assert_eq!(again, model, "{name}");
             }
-            Id::OpenSim | Id::Urdf => {
+            // Documents have angles and quaternions for matrices.
+            Id::Document | Id::OpenSim | Id::Urdf => {
                 let off = model_off(format);
                 println!("{name}: transforms are off by {off:.1e}");
                 assert!(off < 1e-12, "{name}: {off}");
@@ -265,7 +266,9 @@ fn every_format_that_is_read_and_written_gives_back_what_was_written() {
                 }
             }
             Id::Trc | Id::C3d => {
-                for units in [LengthUnit::Millimetre, LengthUnit::Metre] {
+                // C3D files are written in millimetres.
+                let of_trc = (format.id == Id::Trc).then_some(LengthUnit::Metre);
+                for units in of_trc.into_iter().chain([LengthUnit::Millimetre]) {
                     let recording = recording(&mut numbers, units);
                     let bytes = encode::recording(format, &recording, "a").expect("markers");
                     let again = match read(format, &bytes, &Assumed::default()) {
@@ -357,7 +360,7 @@ fn rows(take: &str) -> Vec<(String, Vec<f64>)> {
 fn a_published_take_is_written_with_its_own_numbers() {
     let Some(folder) = data() else { return };
     let file = |name: &str| std::fs::read(folder.join("shoulder/cmu01").join(name)).expect(name);
-    let (skeleton, take) = (file("01.asf"), file("01_01.amc"));
+    let (skeleton, take) = (file("01.asf"), file("01_03.amc"));
     let assumed = Assumed::default();
     let read = asf::with_skeleton(&take, &skeleton, &assumed).expect("published").value;
     let written = asf::write(&read.motion, &skeleton, &assumed).expect("its own").value;

@@ -11,6 +11,7 @@ mod document;
 mod fk;
 mod info;
 #[cfg(unix)]
+mod keypoints;
 mod kill;
 mod leg;
 #[cfg(target_os = "linux")]
