@@ -87,7 +87,7 @@ fn a_take_needs_its_skeleton() {
 fn a_model_goes_to_bvh_looking_along_z_and_a_skeleton_as_it_is() {
     let folder = Folder::new("skeleton-facing");
     // A model looks along +x unless it says otherwise: its nose is 10 cm ahead.
-    let model = "condyle = 1\nname = \"nose\"\n[segments]\nhead = { at = [0, 1.6, 0] }\n\
+    let model = "condyle = 1\nkind = \"model\"\nname = \"nose\"\n[segment]\nhead = { at = [0, 1.6, 0] }\n\
                  nose = { parent = \"head\", at = [0.1, 0, 0] }\n";
     folder.write("nose.toml", model);
     let nose = |file: &str| {
