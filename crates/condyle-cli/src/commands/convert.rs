@@ -268,7 +268,20 @@ impl Convert {
             say(&format!("note: {}: lengths are in cm (--length-unit)", self.output.display()));
         }
         let unit = unit.unwrap_or(bvh::USUAL_UNIT);
+        let turned = (!self.is_of_skeleton()).then(|| encode::ahead(model));
+        let model = turned.as_ref().unwrap_or(model);
         Ok(warned(&self.output, encode::skeleton(target, model, motion, self.mode(), unit)?))
+    }
+
+    /// Whether what is written is a figure that a file of skeletons holds, which goes back as it looks.
+    fn is_of_skeleton(&self) -> bool {
+        let file = self.onto.onto.as_ref().or(self.model.as_ref()).unwrap_or(&self.input);
+        Format::of_ending(&open::ending(file)).is_some_and(|format| {
+            matches!(
+                format.id,
+                Id::Bvh | Id::Asf | Id::Amc | Id::Skel | Id::Glb | Id::Gltf | Id::Fbx
+            )
+        })
     }
 
     fn motion_as(&self, moving: Moving, target: &Format) -> Result<Vec<u8>, Failure> {

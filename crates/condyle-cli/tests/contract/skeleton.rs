@@ -102,3 +102,28 @@ fn a_take_is_written_as_a_take() {
     assert_eq!(none.code, 2);
     assert!(none.err.contains("--onto"), "{}", none.err);
 }
+
+#[test]
+fn a_model_goes_to_bvh_looking_along_z_and_a_skeleton_as_it_is() {
+    let folder = Folder::new("skeleton-facing");
+    // A model looks along +x unless it says otherwise: its nose is 10 cm ahead.
+    let model = "condyle = 1\nkind = \"model\"\nname = \"nose\"\n[segment]\nhead = { at = [0, 1.6, 0] }\n\
+                 nose = { parent = \"head\", at = [0.1, 0, 0] }\n";
+    folder.write("nose.toml", model);
+    let nose = |file: &str| {
+        let found = folder.condyle(&["fk", file, "--length-unit", "cm", "--up-axis", "y"]).json();
+        translation(&found["frames"][0], "nose")
+    };
+    folder.condyle(&["convert", "nose.toml", "nose.bvh", "--length-unit", "cm"]).expect(0);
+    for (found, expected) in nose("nose.bvh").iter().zip([0.0, 1.6, 0.1]) {
+        assert!((found - expected).abs() < 1e-9, "{:?}", nose("nose.bvh"));
+    }
+    // One that was read from a skeleton file looks where it looked.
+    let text = "HIERARCHY\nROOT head\n{\nOFFSET 0 160 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT nose\n{\n\
+                OFFSET 10 0 0\nCHANNELS 0\nEnd Site\n{\nOFFSET 1 0 0\n}\n}\n}\nMOTION\nFrames: 1\n\
+                Frame Time: 0.1\n0 0 0\n";
+    folder.write("aside.bvh", text);
+    let again = ["convert", "aside.bvh", "again.bvh", "--length-unit", "cm", "--up-axis", "y"];
+    folder.condyle(&again).expect(0);
+    assert!((nose("again.bvh")[0] - 0.1).abs() < 1e-9, "{:?}", nose("again.bvh"));
+}
