@@ -83,11 +83,7 @@ impl Constrain {
         let binding = open::is_binding(&self.model);
         let model = match binding {
             true => None,
-            false => {
-                let mut model = warned(&self.model, open::model(&self.model)?);
-                self.be_strict(&mut model);
-                Some(model)
-            }
+            false => Some(self.asked(warned(&self.model, open::model(&self.model)?))),
         };
         let made_from = self.digest(model.as_ref());
         let several = self.motions.len() > 1;
@@ -142,7 +138,9 @@ impl Constrain {
     }
 
     /// With `--strict`, what learned limits do not know is outside.
-    fn be_strict(&self, _model: &mut Model) {}
+    fn asked(&self, model: Model) -> Model {
+        if self.strict { model.with_strict_limits() } else { model }
+    }
 
     fn one(
         &self,
@@ -216,8 +214,7 @@ impl Constrain {
             };
         }
         let Animation { model: own, motion } = warned(path, open::animation(path)?);
-        let mut model = warned(&self.model, open::bound(&self.model, &own)?);
-        self.be_strict(&mut model);
+        let model = self.asked(warned(&self.model, open::bound(&self.model, &own)?));
         let motion = carried_over(&own, &motion, &model);
         Ok(Loaded { model, motion, from: From::Skeleton(own) })
     }
@@ -248,6 +245,9 @@ impl Constrain {
                 };
                 if format.id == Id::Bvh && is(Id::Bvh) {
                     return Ok(open::bvh_with(path, &own_motion)?);
+                }
+                if format.id == Id::Amc {
+                    return Ok(warned(path, open::take_written(path, &own_motion)?));
                 }
                 if format.id == Id::Glb && open::is_gltf(path) {
                     return Ok(warned(path, open::reanimated(path, &own_motion, vec![], &name)?));

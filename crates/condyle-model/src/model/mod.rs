@@ -366,6 +366,18 @@ impl Model {
         Self { closures: vec![], ..self.clone() }
     }
 
+    /// The model whose learned limits allow no orientation that nobody was recorded in.
+    #[must_use]
+    pub fn with_strict_limits(&self) -> Self {
+        let mut model = self.clone();
+        for component in &mut model.components {
+            if let crate::component::Law::Field(field) = &mut component.law {
+                field.strict = true;
+            }
+        }
+        model
+    }
+
     /// Everything that a component reads: the values at its ports, and the motions between the
     /// segments there.
     pub fn reads(&self, id: ComponentId) -> Vec<Signal> {

@@ -4,7 +4,7 @@ use super::count;
 use crate::output::columns;
 use condyle::check::motion::MotionCheck;
 use condyle::constraining::{Fate, Repair, Step};
-use condyle::{CoordinateKind, Model, Motion};
+use condyle::{CoordinateKind, Law, Model, Motion};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::Path;
@@ -51,13 +51,16 @@ fn violations(model: &Model, check: &MotionCheck) -> Vec<Violation> {
             source: outside.source.clone(),
         }
     });
-    let limits = check.broken.iter().map(|broken| {
+    let kinds = |unseen: bool| move |broken| (broken, unseen);
+    let broken = check.broken.iter().map(kinds(false));
+    let limits = broken.chain(check.unseen.iter().map(kinds(true))).map(|(broken, unseen)| {
         let component = &model.components()[broken.component.index()];
         let set = &model.joint_sets()[component.joint_set.index()].name;
         let nearest = broken.nearest.iter().map(|near| (near.name.clone(), json!(near.valid)));
         Violation {
             limit: format!("{set}.{}", component.name),
-            kind: component.law.kind().name.to_owned(),
+            // Nobody was recorded there: moved only with --strict.
+            kind: if unseen { "unseen" } else { component.law.kind().name }.to_owned(),
             frames: broken.frames,
             runs: broken.runs.clone(),
             frame: broken.frame,
@@ -65,7 +68,10 @@ fn violations(model: &Model, check: &MotionCheck) -> Vec<Violation> {
             by: broken.by,
             unit: unit(broken.kind),
             nearest: Value::Object(nearest.collect()),
-            source: format!("the model's {}", component.law.kind().name),
+            source: match &component.law {
+                Law::Field(field) => field.limit.about().source.clone(),
+                law => format!("the model's {}", law.kind().name),
+            },
         }
     });
     let loops = check.open_loops.iter().map(|open| Violation {
