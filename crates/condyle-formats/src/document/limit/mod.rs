@@ -32,6 +32,7 @@ mod spheres;
 mod write;
 
 pub use spheres::{is_of_spheres, read_spheres, write_spheres};
+pub(super) use write::named_keys;
 pub use write::write;
 
 use super::fields::{Fields, Reader};
