@@ -9,7 +9,7 @@
 //! | `speed` | nanoseconds of a query, seconds of learning |
 
 #[path = "../tests/field/shapes.rs"]
-#[allow(dead_code)]
+#[allow(dead_code, reason = "what only tests ask for")]
 mod shapes;
 
 use condyle_learn::limits::{Cloud, Field, Settings, State, learn};
