@@ -22,6 +22,7 @@ mod boundary;
 mod chart;
 mod lattice;
 mod learned;
+mod outer;
 mod packed;
 mod projection;
 
@@ -330,6 +331,10 @@ impl Field {
     }
 
     fn projected(&self, q: Quat, inward: Quat, distance: f64) -> Quat {
+        self.projected_on(self.valid(), q, inward, distance)
+    }
+
+    fn projected_on(&self, spline: &[f32], q: Quat, inward: Quat, distance: f64) -> Quat {
         let same = |q: Quat| {
             let q = q.normalized();
             if (self.chart.outward(inward)).dot(q) < 0.0 { -q } else { q }
@@ -337,7 +342,6 @@ impl Field {
         if distance >= 0.0 || distance.is_nan() {
             return same(q);
         }
-        let spline = self.valid();
         let starts = self.boundary.starts(&self.lattice, inward);
         let inside = |p: &Quat| self.lattice.value(spline, *p) >= 0.0;
         let anchor = || {
