@@ -97,6 +97,22 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Read<Table>, Error> {
     read_decoded(bytes, read)
 }
 
+/// The line on which a row of a table stands, rows counted from 0 and lines from 1.
+///
+/// ```
+/// use condyle_formats::csv::line_of_row;
+/// let text = b"# a remark\nqx,qy,qz,qw\n0,0,0,1\n\n0,0,0,0\n";
+/// assert_eq!(line_of_row(text, 1), Some(5));
+/// assert_eq!(line_of_row(text, 2), None);
+/// ```
+#[must_use]
+pub fn line_of_row(bytes: &[u8], row: usize) -> Option<usize> {
+    let read = text::decode(bytes).ok()?;
+    let mut lines = lines(&read.value).filter(|line| !line.is_blank());
+    lines.by_ref().find(|line| !line.text.trim_start().starts_with('#'))?;
+    lines.nth(row).map(|line| line.number)
+}
+
 /// Writes a table: `time`, then its columns, after a comment line if its angles are in degrees.
 ///
 /// # Errors

@@ -23,7 +23,9 @@ use crate::{
     poses::{self, Poses},
 };
 #[cfg(feature = "document")]
-use condyle_learn::{frames::Recipe, limits::LearnedLimit};
+use condyle_learn::frames::Recipe;
+#[cfg(feature = "document")]
+use condyle_learn::limits::{LearnedLimit, herda2003::LearnedSpheres};
 use condyle_model::Model;
 
 /// What a file may hold.
@@ -105,6 +107,9 @@ pub enum Content {
     /// Which rotations of a segment in another are possible.
     #[cfg(feature = "document")]
     Limit(Box<LearnedLimit>),
+    /// The same by the method of Herda et al. 2003.
+    #[cfg(feature = "document")]
+    Spheres(Box<LearnedSpheres>),
     /// A setup of inverse kinematics.
     #[cfg(feature = "opensim")]
     Setup(setup::IkSetup),
@@ -143,7 +148,7 @@ impl Content {
             #[cfg(feature = "document")]
             Self::Recipe(_) => ContentKind::Recipe,
             #[cfg(feature = "document")]
-            Self::Limit(_) => ContentKind::Limit,
+            Self::Limit(_) | Self::Spheres(_) => ContentKind::Limit,
             #[cfg(feature = "opensim")]
             Self::Setup(_) | Self::Tasks(_) => ContentKind::Setup,
         }
@@ -244,6 +249,10 @@ pub const FORMATS: &[Format] = &[
                 Some(Kind::Names) => document::names::read(text, include)?.map(Content::Names),
                 Some(Kind::Goals) => document::goals::read(text, include)?.map(Content::Goals),
                 Some(Kind::Recipe) => document::recipe::read(text, include)?.map(Content::Recipe),
+                Some(Kind::Limit) if document::limit::is_of_spheres(text) => {
+                    document::limit::read_spheres(text, include)?
+                        .map(|spheres| Content::Spheres(Box::new(spheres)))
+                }
                 Some(Kind::Limit) => document::limit::read(text, include)?
                     .map(|limit| Content::Limit(Box::new(limit))),
                 // Those that are no document at all get the message of a model.
@@ -446,7 +455,7 @@ pub const FORMATS: &[Format] = &[
         title: "takes of Acclaim's skeletons",
         endings: &["amc"],
         reads: &[ContentKind::Motion, ContentKind::Model],
-        writes: &[],
+        writes: &[ContentKind::Scene],
         sniff: |bytes| keyword(bytes).starts_with(":fully-specified"),
         read: |_, _| {
             let message = "a take means nothing without its skeleton, an .asf file";

@@ -3,7 +3,9 @@
 //! | module | what |
 //! | --- | --- |
 //! | [`frames`] | orientations of segments from markers, by a recipe |
+//! | [`rotations`] | orientations of segments from tables, inertial sensors and motions |
 //! | [`limits`] | limits of joints from orientations |
 
 pub mod frames;
 pub mod limits;
+pub mod rotations;

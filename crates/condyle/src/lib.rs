@@ -260,6 +260,7 @@
 //! | [`limits`] | limits of joints learned from rotations |
 //! | [`picture`], [`render`] | still pictures of models, and of any surfaces and lines |
 //! | [`posing`] | the pose nearest to rest that meets goals |
+//! | [`learning`] | limits of joints from recordings, and what they say |
 //! | [`check`] | findings about a model, or about a motion of it |
 //! | [`formats`], [`open`], [`encode`] | bytes to values and back, by path or not |
 //! | [`shipped`], [`scene`] | models that come along, animated scenes |
@@ -270,6 +271,8 @@
 pub mod constraining;
 pub mod encode;
 mod figure;
+#[cfg(feature = "document")]
+pub mod learning;
 pub mod legal;
 #[cfg(feature = "document")]
 pub mod limits;

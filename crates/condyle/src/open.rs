@@ -24,7 +24,7 @@ use condyle_formats::skeleton::Assumed;
 use condyle_formats::text::utf8;
 use condyle_formats::{Content, ContentKind, FORMATS, Format, Id};
 #[cfg(feature = "document")]
-use condyle_learn::limits::LearnedLimit;
+use condyle_learn::{frames::Recipe, limits::LearnedLimit};
 use condyle_model::Model;
 #[cfg(feature = "poses")]
 use condyle_motion::Keys;
@@ -39,7 +39,7 @@ pub use parts::{MotionParts, motion_parts};
 pub use source::{
     animation_is, assumed, files_read, is_standard_input, nameless_is, skeletons_are,
 };
-pub use take::skeleton_is;
+pub use take::{skeleton_is, written as take_written};
 
 /// A file that could not be used.
 #[derive(Debug)]
@@ -673,6 +673,32 @@ pub fn settled(
     table.settle_angles(Some(model), angles)
 }
 
+/// Opens a recipe; where there is no such file, a [`shipped`] one.
+///
+/// # Errors
+/// As [`content`].
+#[cfg(feature = "document")]
+pub fn recipe(path: &Path) -> Result<Read<Recipe>, OpenError> {
+    if let Some(text) = path.to_str().filter(|_| !path.is_file()).and_then(shipped::recipe) {
+        let read = document::recipe::read(text, &mut |_| Err("it stands alone".to_owned()));
+        return read
+            .map_err(|error| failed(path, Cause::Content { error, text: Some(text.to_owned()) }));
+    }
+    let word = path.to_str().filter(|word| !word.contains(['.', '/', '\\']) && !path.exists());
+    if let Some(word) = word.filter(|_| !is_standard_input(path)) {
+        let shipped: Vec<&str> = shipped::recipes().collect();
+        let message = format!("`{word}` is neither a file nor a shipped recipe");
+        let all = || format!("shipped are: {}", shipped.join(", "));
+        let help = did_you_mean(word, shipped.iter().copied(), all);
+        let error = Error::new("file/recipe", message).with_help(help);
+        return Err(failed(path, Cause::Content { error, text: None }));
+    }
+    only(path, ContentKind::Recipe, Zeros::Told, |content| match content {
+        Content::Recipe(recipe) => Some(recipe),
+        _ => None,
+    })
+}
+
 /// Opens what a pose should do.
 ///
 /// # Errors
@@ -693,6 +719,19 @@ pub fn goals(path: &Path) -> Result<Read<GoalList>, OpenError> {
 pub fn limit(path: &Path) -> Result<Read<LearnedLimit>, OpenError> {
     only(path, ContentKind::Limit, Zeros::Told, |content| match content {
         Content::Limit(limit) => Some(*limit),
+        _ => None,
+    })
+}
+
+/// Opens a learned limit of any method.
+///
+/// # Errors
+/// As [`content`].
+#[cfg(feature = "document")]
+pub fn any_limit(path: &Path) -> Result<Read<crate::learning::Limit>, OpenError> {
+    only(path, ContentKind::Limit, Zeros::Told, |content| match content {
+        Content::Limit(limit) => Some(crate::learning::Limit::Field(limit)),
+        Content::Spheres(spheres) => Some(crate::learning::Limit::Spheres(spheres)),
         _ => None,
     })
 }

@@ -65,6 +65,19 @@ const NAME_TABLES: &[(&str, &str)] = &[
     ("plug-in-gait", include_str!("../names/plug-in-gait.toml")),
 ];
 
+/// Name and text of every shipped recipe, by name.
+#[cfg(feature = "document")]
+const RECIPES: &[(&str, &str)] = &[
+    ("hip", include_str!("../recipes/hip.toml")),
+    ("hip-left", include_str!("../recipes/hip-left.toml")),
+    ("shoulder-herda2003", include_str!("../recipes/shoulder-herda2003.toml")),
+    ("shoulder-herda2003-left", include_str!("../recipes/shoulder-herda2003-left.toml")),
+    ("shoulder-isb", include_str!("../recipes/shoulder-isb.toml")),
+    ("shoulder-isb-left", include_str!("../recipes/shoulder-isb-left.toml")),
+    ("shoulder-plug-in-gait", include_str!("../recipes/shoulder-plug-in-gait.toml")),
+    ("shoulder-plug-in-gait-left", include_str!("../recipes/shoulder-plug-in-gait-left.toml")),
+];
+
 /// Name and text of every shipped table of the names of bones, by name.
 #[cfg(feature = "document")]
 const SKELETONS: &[(&str, &str)] = &[
@@ -100,6 +113,18 @@ pub fn name_tables() -> impl Iterator<Item = &'static str> {
 #[cfg(feature = "document")]
 pub fn name_table(name: &str) -> Option<&'static str> {
     NAME_TABLES.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}
+
+/// The names of all shipped recipes, in alphabetical order.
+#[cfg(feature = "document")]
+pub fn recipes() -> impl Iterator<Item = &'static str> {
+    RECIPES.iter().map(|(name, _)| *name)
+}
+
+/// The text of a shipped recipe; `None` if none has that name.
+#[cfg(feature = "document")]
+pub fn recipe(name: &str) -> Option<&'static str> {
+    RECIPES.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }
 
 /// The names of all shipped models, in alphabetical order.

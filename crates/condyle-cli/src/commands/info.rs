@@ -113,6 +113,12 @@ fn to_text(content: &Content) -> String {
             format!("{} goals of a pose\n{goals}", list.goals.len())
         }
         Content::Limit(limit) => limit::to_text(limit),
+        Content::Spheres(spheres) => format!(
+            "a learned limit of {} spheres (Herda et al. 2003): {} in {}\n",
+            spheres.limit.field.primitives.len(),
+            spheres.about.child,
+            spheres.about.reference.as_deref().unwrap_or("the laboratory")
+        ),
         Content::Recipe(recipe) => {
             let reference = recipe.reference.as_ref().map_or("laboratory", |frame| &frame.name);
             let places = recipe.places().join(", ");

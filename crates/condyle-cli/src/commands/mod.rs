@@ -8,6 +8,8 @@ mod demo;
 mod diff;
 mod fk;
 mod info;
+mod learn;
+mod limits;
 mod pose;
 mod render;
 mod scale;
@@ -95,6 +97,10 @@ enum Command {
     Track(track::Track),
     /// Scale a model to the person of a static trial.
     Scale(scale::Scale),
+    /// Learn from recordings which rotations of a joint are possible.
+    Learn(learn::Learn),
+    /// Ask learned limits about rotations, and about the mobility of a joint.
+    Limits(limits::Limits),
     /// Find the legal motion nearest to a given one, and what limits it broke.
     Constrain(constrain::Constrain),
     /// Write a file in another format.
@@ -192,6 +198,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
         Command::Render(command) => command.run(),
         Command::Track(command) => command.run(),
         Command::Scale(command) => command.run(),
+        Command::Learn(command) => command.run(),
+        Command::Limits(command) => command.run(),
         Command::Constrain(command) => command.run(),
         Command::Convert(command) => command.run(),
         Command::Upkeep(command) => command.run(),

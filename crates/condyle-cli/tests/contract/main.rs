@@ -12,8 +12,10 @@ mod document;
 mod fk;
 mod info;
 #[cfg(unix)]
+mod keypoints;
 mod kill;
 mod leg;
+mod limits;
 #[cfg(target_os = "linux")]
 mod long;
 #[cfg(unix)]

@@ -84,6 +84,26 @@ fn a_take_needs_its_skeleton() {
 }
 
 #[test]
+fn a_take_is_written_as_a_take() {
+    let folder = Folder::new("skeleton-take-written");
+    let skeleton = ":units\n length 0.45\n angle deg\n:root\n order TX TY TZ RX RY RZ\n:bonedata\n begin\n \
+        name femur\n direction 0 -1 0\n length 7\n axis 0 0 0 XYZ\n dof rx\n end\n:hierarchy\n begin\n \
+        root femur\n end\n";
+    let take = ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 17.5 0 0 0 0\nfemur 90\n2\nroot 0 17.25 0 0 10 0\nfemur 45\n";
+    folder.write("anna.asf", skeleton).write("anna_1.amc", take);
+    // Through itself, and through a table.
+    folder.condyle(&["convert", "anna_1.amc", "again.amc"]).expect(0);
+    assert_eq!(folder.read("again.amc"), take);
+    folder.condyle(&["convert", "anna_1.amc", "a.csv"]).expect(0);
+    folder.condyle(&["convert", "a.csv", "third.amc", "--model", "anna.asf"]).expect(0);
+    assert_eq!(folder.read("third.amc"), take);
+    folder.write("leg.bvh", "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\nFrames: 1\nFrame Time: 1\n0\n");
+    let none = folder.condyle(&["convert", "leg.bvh", "leg.amc"]);
+    assert_eq!(none.code, 2);
+    assert!(none.err.contains("--onto"), "{}", none.err);
+}
+
+#[test]
 fn a_model_goes_to_bvh_looking_along_z_and_a_skeleton_as_it_is() {
     let folder = Folder::new("skeleton-facing");
     // A model looks along +x unless it says otherwise: its nose is 10 cm ahead.

@@ -6,6 +6,7 @@
 //! reference   = the one in which it is seen: a frame; without one it is the laboratory
 //! least_angle = frames are left out where two directions are nearer to parallel; 15 degrees if not given
 //! point.P     = markers whose mean is meant by P
+//! also.M      = other names of marker M, tried in this order where a recording has none of that name
 //! frame.F     = two of x, y, z, each a direction, and
 //! keeps       = which of the two keeps its direction; the other is made perpendicular
 //! direction   = { from, to } | { normal = [a, b, c] }: (b - a) × (c - a); each a point or a marker
@@ -19,7 +20,7 @@ use condyle_learn::frames::{Axis, Direction, FrameRecipe, Place, Recipe};
 
 const FORM: Form = Form {
     kind: Kind::Recipe,
-    keys: &["child", "reference", "least_angle", "point", "frame", "source"],
+    keys: &["child", "reference", "least_angle", "point", "also", "frame", "source"],
     own: &[],
     repeated: &[],
 };
@@ -72,6 +73,12 @@ impl Reader<'_> {
             let markers = markers.into_iter().map(|marker| marker.text).collect();
             points.push(Place { name: entry.key.text.clone(), markers });
         }
+        let mut also = vec![];
+        for entry in top.get("also").map_or(&[][..], |node| self.entries(node, "also")) {
+            let (markers, _) = self.names(&entry.node, &entry.key.text);
+            let markers = markers.into_iter().map(|marker| marker.text).collect();
+            also.push(Place { name: entry.key.text.clone(), markers });
+        }
         let mut frames = vec![];
         let tables = top.get("frame").map_or(&[][..], |node| self.entries(node, "frame"));
         for entry in tables {
@@ -101,7 +108,7 @@ impl Reader<'_> {
             None => None,
             Some(node) => Some(self.frame_named(node, "reference", &named, &frames)?),
         };
-        Some(Recipe { points, child: child?, reference, least_angle })
+        Some(Recipe { points, also, child: child?, reference, least_angle })
     }
 
     fn frame_named(

@@ -13,17 +13,19 @@
 //! Rotations are those of the child's axes in the reference segment's, R_reference⁻¹ R_child: how the
 //! trunk leans does not enter the range of a shoulder.
 
+mod labels;
 mod recipe;
 #[cfg(test)]
 mod tests;
 
+pub use labels::{Guess, Guessed};
 pub use recipe::{Axis, Direction, FrameRecipe, Place, Recipe};
 
-use condyle_diagnostics::{Diagnostic, Error, did_you_mean};
+use condyle_diagnostics::{Diagnostic, Error};
 use condyle_math::{Mat3, Quat, Vec3};
 use condyle_motion::Recording;
 
-/// Rotations of one segment in another, from one recording.
+/// Rotations of one segment in another, from one recording of any kind.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Orientated {
     /// The rotations of the child in the reference segment, in the order of the recording.
@@ -34,14 +36,20 @@ pub struct Orientated {
     pub missing: usize,
     /// Frames in which the axes were ill-conditioned.
     pub ill_conditioned: usize,
+    /// Frames whose numbers are no rotation: not finite, or a quaternion of length 0.
+    pub unusable: Vec<usize>,
+    /// Frames whose quaternion is not of length 1 to a thousandth; it is made so.
+    pub scaled: usize,
+    /// Markers that were taken under another name.
+    pub guesses: Vec<Guess>,
 }
 
 impl Orientated {
     /// What a person should know about it: how many frames were left out, and why.
     #[must_use]
     pub fn warnings(&self) -> Vec<Diagnostic> {
-        let all = self.frames.len() + self.missing + self.ill_conditioned;
-        let mut warnings = vec![];
+        let all = self.given();
+        let mut warnings = labels::warnings(&self.guesses);
         if self.missing > 0 {
             let message = format!("{} of {all} frames lack a marker of the recipe", self.missing);
             warnings.push(Diagnostic::note("recipe/missing", message));
@@ -53,65 +61,74 @@ impl Orientated {
             );
             warnings.push(Diagnostic::note("recipe/ill-conditioned", message));
         }
+        if let Some(first) = self.unusable.first() {
+            let count = self.unusable.len();
+            let message = format!(
+                "{count} of {all} frames are left out: not finite, or of length 0; the first is frame {first}, counted from 0"
+            );
+            warnings.push(Diagnostic::warning("rotations/unusable", message));
+        }
+        if self.scaled > 0 {
+            let message = format!(
+                "{} of {all} quaternions are not of length 1 to a thousandth: they are made so",
+                self.scaled
+            );
+            warnings.push(Diagnostic::warning("rotations/length", message));
+        }
         warnings
+    }
+
+    /// How many frames the recording has.
+    #[must_use]
+    pub fn given(&self) -> usize {
+        self.frames.len() + self.missing + self.ill_conditioned + self.unusable.len()
+    }
+
+    /// Takes a quaternion of a frame, whatever it is.
+    pub(crate) fn push(&mut self, frame: usize, q: Quat) {
+        let length = q.dot(q).sqrt();
+        if !(length.is_finite() && length > 1e-9) {
+            self.unusable.push(frame);
+            return;
+        }
+        self.scaled += usize::from((length - 1.0).abs() > 1e-3);
+        self.rotations.push(q.normalized());
+        self.frames.push(frame);
     }
 }
 
 /// The markers of a recording that the places of a recipe are.
-struct Found(Vec<(String, Vec<usize>)>);
+struct Found {
+    places: Vec<(String, Vec<usize>)>,
+    guesses: Vec<Guess>,
+}
 
 impl Found {
-    fn new(recipe: &Recipe, recording: &Recording) -> Result<Self, Error> {
-        let mut found = vec![];
+    fn new(recipe: &Recipe, recording: &Recording, subject: Option<&str>) -> Result<Self, Error> {
+        let mut found = Self { places: vec![], guesses: vec![] };
         for name in recipe.places() {
             let markers = match recipe.points.iter().find(|point| point.name == name) {
                 Some(place) => &place.markers[..],
                 None => std::slice::from_ref(&name),
             };
-            let markers = markers.iter().map(|marker| label(recording, marker));
-            found.push((name.clone(), markers.collect::<Result<_, _>>()?));
+            let mut labels = vec![];
+            for marker in markers {
+                let (label, guess) = labels::label(recipe, recording, marker, subject)?;
+                labels.push(label);
+                found.guesses.extend(guess.filter(|guess| !found.guesses.contains(guess)));
+            }
+            found.places.push((name, labels));
         }
-        Ok(Self(found))
+        Ok(found)
     }
 
     fn place(&self, name: &str, recording: &Recording, frame: usize) -> Option<Vec3> {
-        let (_, markers) = self.0.iter().find(|(place, _)| place == name)?;
+        let (_, markers) = self.places.iter().find(|(place, _)| place == name)?;
         let mut sum = Vec3::zero();
         for &marker in markers {
             sum += Vec3::from(recording.position(frame, marker)?);
         }
         Some(sum * (1.0 / markers.len() as f64))
-    }
-}
-
-/// A marker by its name; without the name of a subject before a colon where that is needed and clear.
-fn label(recording: &Recording, marker: &str) -> Result<usize, Error> {
-    if let Some(exact) = recording.marker(marker) {
-        return Ok(exact);
-    }
-    let bare = |label: &str| label.rsplit(':').next().unwrap_or(label).trim().to_owned();
-    let mut fits = recording
-        .labels
-        .iter()
-        .enumerate()
-        .filter(|(_, label)| bare(label).eq_ignore_ascii_case(marker));
-    match (fits.next(), fits.next()) {
-        (Some((index, _)), None) => Ok(index),
-        (Some((_, one)), Some((_, two))) => Err(Error::new(
-            "recipe/marker",
-            format!("marker `{marker}` of the recipe may be `{one}` or `{two}`"),
-        )),
-        _ => {
-            let labels = recording.labels.iter().map(String::as_str);
-            let otherwise = || "the recipe names markers as this recording does not".to_owned();
-            let help = did_you_mean(marker, labels, otherwise);
-            Err(Diagnostic::error(
-                "recipe/marker",
-                format!("the recording has no marker `{marker}`"),
-            )
-            .with_help(help)
-            .into())
-        }
     }
 }
 
@@ -125,7 +142,7 @@ impl Recipe {
     /// The rotations that a recording shows.
     ///
     /// # Errors
-    /// `recipe/marker` if the recording lacks a marker of the recipe, or two fit.
+    /// As [`rotations_of`](Self::rotations_of).
     ///
     /// ```
     /// use condyle_learn::frames::{Axis, Direction, FrameRecipe, Recipe};
@@ -153,9 +170,25 @@ impl Recipe {
     /// # Ok::<(), condyle_diagnostics::Error>(())
     /// ```
     pub fn rotations(&self, recording: &Recording) -> Result<Orientated, Error> {
-        let found = Found::new(self, recording)?;
+        self.rotations_of(recording, None)
+    }
+
+    /// The rotations of one of several people in a recording: those whose labels begin with the name of the
+    /// subject and a colon.
+    ///
+    /// A marker is found by its name; else without `Subject:`, else ignoring case, each a guess with a
+    /// warning.
+    ///
+    /// # Errors
+    /// `recipe/marker` if the recording lacks a marker of the recipe, or two fit.
+    pub fn rotations_of(
+        &self,
+        recording: &Recording,
+        subject: Option<&str>,
+    ) -> Result<Orientated, Error> {
+        let found = Found::new(self, recording, subject)?;
         let least = self.least_angle.sin();
-        let mut said = Orientated::default();
+        let mut said = Orientated { guesses: found.guesses.clone(), ..Orientated::default() };
         for frame in 0..recording.frames() {
             let place = |name: &str| found.place(name, recording, frame).ok_or(Failed::Missing);
             let rotation = axes(&self.child, least, &place).and_then(|child| {
@@ -165,10 +198,7 @@ impl Recipe {
                 })
             });
             match rotation {
-                Ok(rotation) => {
-                    said.rotations.push(Quat::from_mat3(rotation));
-                    said.frames.push(frame);
-                }
+                Ok(rotation) => said.push(frame, Quat::from_mat3(rotation)),
                 Err(Failed::Missing) => said.missing += 1,
                 Err(Failed::IllConditioned) => said.ill_conditioned += 1,
             }

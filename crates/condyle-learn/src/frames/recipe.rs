@@ -5,6 +5,8 @@
 pub struct Recipe {
     /// Means of several markers, by names of their own.
     pub points: Vec<Place>,
+    /// Other names of markers, in the order in which they are tried after their own.
+    pub also: Vec<Place>,
     /// The segment whose rotation is learned.
     pub child: FrameRecipe,
     /// The segment in which it is seen; without one it is the laboratory.
@@ -18,6 +20,7 @@ impl Default for Recipe {
     fn default() -> Self {
         Self {
             points: vec![],
+            also: vec![],
             child: FrameRecipe::default(),
             reference: None,
             least_angle: 15f64.to_radians(),

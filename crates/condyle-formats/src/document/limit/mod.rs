@@ -28,8 +28,10 @@
 //! The field is no part of the file: it is made when it is first asked for, and answers as the one that was
 //! learned.
 
+mod spheres;
 mod write;
 
+pub use spheres::{is_of_spheres, read_spheres, write_spheres};
 pub(super) use write::named_keys;
 pub use write::write;
 

@@ -88,6 +88,11 @@ fn keys(out: &mut String, limit: &LearnedLimit, within: &str) {
     let _ = writeln!(out, "thinned = {}", number(*thinned));
     let [left, right] = chart.sides().map(|q| numbers(&q.to_array()));
     let _ = writeln!(out, "axes = [\n    {left},\n    {right},\n]");
+    packed_samples(out, samples);
+}
+
+/// Rotations in base64.
+pub(super) fn packed_samples(out: &mut String, samples: &[condyle_math::Quat]) {
     let bytes: Vec<u8> =
         samples.iter().flat_map(|q| packed(*q)).flat_map(u16::to_le_bytes).collect();
     let letters = base64::encode(&bytes);

@@ -1,0 +1,18 @@
+//! Limits of joints from recordings: by path, of any kind that holds orientations.
+//!
+//! | module | what |
+//! | --- | --- |
+//! | `take` | the rotations that one recording shows: by a recipe, by a model and a joint, or as they stand |
+//! | `limit` | a limit from takes: thinned, with a layer from takes that were left out |
+//! | `query` | what a limit says of rotations |
+//! | `mobility` | a learned limit in numbers, and two compared |
+
+mod limit;
+mod mobility;
+mod query;
+mod take;
+
+pub use limit::{How, LearnedFrom, MOST_INDEPENDENT, learn, spheres};
+pub use mobility::{About, Axis, Region, Report, Side, Versus, report, versus};
+pub use query::{Answered, Limit};
+pub use take::{Take, Wanted, take};
