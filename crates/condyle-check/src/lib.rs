@@ -67,9 +67,12 @@ fn finding(
     Diagnostic::new(severity, code, message).about_all(subjects).with_help(help)
 }
 
-/// Whether a finding makes a check fail: all but notes do.
+/// What readers say where a file does not state its unit, its axes or its rate: a guess is no fault of the figure.
+const GUESSES: [&str; 3] = ["skeleton/unit", "skeleton/up", "amc/rate"];
+
+/// Whether a finding makes a check fail: all but notes do, and but what was guessed as the file's format has no place for it.
 pub fn counts(finding: &Diagnostic) -> bool {
-    finding.severity > Severity::Note
+    finding.severity > Severity::Note && !GUESSES.contains(&finding.code)
 }
 
 /// All findings about a model and the warnings of its reader, the worst first.

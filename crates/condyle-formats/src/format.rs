@@ -455,7 +455,7 @@ pub const FORMATS: &[Format] = &[
         title: "takes of Acclaim's skeletons",
         endings: &["amc"],
         reads: &[ContentKind::Motion, ContentKind::Model],
-        writes: &[],
+        writes: &[ContentKind::Scene],
         sniff: |bytes| keyword(bytes).starts_with(":fully-specified"),
         read: |_, _| {
             let message = "a take means nothing without its skeleton, an .asf file";

@@ -21,7 +21,7 @@
 //! | OpenSim models | [`opensim::model::read`] | [`opensim::write`] |
 //! | OpenSim inverse kinematics setups | [`opensim::setup`] | |
 //! | SKEL skeletons of CSE 169 | [`skel::read`] | |
-//! | ASF skeletons, and AMC takes of them | [`asf::read`], [`asf::with_skeleton`] | |
+//! | ASF skeletons, and AMC takes of them | [`asf::read`], [`asf::with_skeleton`] | takes: [`asf::write`] |
 //! | BVH skeletons with motion | [`bvh::from_bytes`] | [`bvh::write`] |
 //! | SMPL, SMPL-H and SMPL-X poses, and their bodies (NPZ) | `smpl::from_bytes`, `smpl::rest` | |
 //! | FBX skeletons with motion | `fbx::read` | |

@@ -8,7 +8,7 @@ use condyle_formats::glb;
 use condyle_formats::{ContentKind, Format, Id, bvh, c3d, csv, sto, trc};
 #[cfg(feature = "document")]
 use condyle_learn::limits::LearnedLimit;
-use condyle_model::{Mode, Model};
+use condyle_model::{Facing, Mode, Model};
 use condyle_motion::{AngleUnit, Motion, Recording, Table};
 
 /// A motion of a model: a table in degrees, a CSV in radians and metres, or a scene of plain bones in
@@ -32,7 +32,7 @@ pub fn motion(
     match format.id {
         #[cfg(feature = "glb")]
         Id::Glb => scene(model, motion, Mode::Open, markers),
-        Id::Bvh => skeleton(format, model, motion, Mode::Open, bvh::USUAL_UNIT),
+        Id::Bvh => skeleton(format, &ahead(model), motion, Mode::Open, bvh::USUAL_UNIT),
         _ => {
             let table = motion_table(format, model, motion, name, remarks);
             self::table(format, &table).map(Read::clean)
@@ -149,6 +149,12 @@ pub fn skeleton(
         Id::Usda => Ok(condyle_formats::usd::write(model, motion, mode)?.map(String::into_bytes)),
         _ => Err(not_written(format, ContentKind::Scene)),
     }
+}
+
+/// A model turned so that it looks along z, as programs that read skeletons expect of one; one that is said to stand along z
+/// is left as it is. Skeleton files say nothing of it, so that what comes from one should go back as it is.
+pub fn ahead(model: &Model) -> Model {
+    model.looking(Facing::PlusZ)
 }
 
 /// A table, number by number.

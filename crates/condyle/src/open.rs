@@ -39,7 +39,7 @@ pub use parts::{MotionParts, motion_parts};
 pub use source::{
     animation_is, assumed, files_read, is_standard_input, nameless_is, skeletons_are,
 };
-pub use take::skeleton_is;
+pub use take::{skeleton_is, written as take_written};
 
 /// A file that could not be used.
 #[derive(Debug)]

@@ -2,7 +2,8 @@
 
 use condyle::formats::skeleton::Assumed;
 use condyle::formats::{Content, bvh};
-use condyle::model::UpAxis;
+use condyle::math::Vec3;
+use condyle::model::{Facing, UpAxis};
 use condyle::open::{self, Cause};
 use condyle::{Mode, Model, Motion, Pose, Program, shipped};
 use std::path::{Path, PathBuf};
@@ -107,4 +108,39 @@ fn the_human_moves_as_bvh_does() {
             assert!(off < 5e-7, "frame {frame}, {}: {off}", again.model.segments()[*id].name);
         }
     }
+}
+
+#[test]
+fn shipped_models_look_along_z_turned_as_a_whole() {
+    let mut turned_models = 0;
+    for name in shipped::names() {
+        let model = shipped::read(name).unwrap().value.model;
+        let turned = model.looking(Facing::PlusZ);
+        assert_eq!(turned, turned.looking(Facing::PlusZ), "{name}");
+        // Back where it looked: the turn and its inverse, to rounding.
+        let back = turned.looking(model.facing());
+        let (to, from) = (turned.facing().direction(), model.facing().direction());
+        // The turn about y that takes one direction to the other, by its definition.
+        let angle = to.x.atan2(to.z) - from.x.atan2(from.z);
+        let (sine, cosine) = angle.sin_cos();
+        turned_models += usize::from(turned.facing() != model.facing());
+        for frame in 0..5 {
+            let mut stored = model.defaults();
+            for (number, id) in model.coordinate_ids().enumerate() {
+                let coordinate = model.coordinate(id);
+                let (low, high) = coordinate.range.bounds();
+                if coordinate.kind.stored() == 1 && low.is_finite() && high.is_finite() {
+                    let share = 0.5 + 0.4 * (f64::from(frame) + number as f64).sin();
+                    *model.value_mut(&mut stored, id) = low + share * (high - low);
+                }
+            }
+            let [own, other, again] = [&model, &turned, &back].map(|model| centres(model, &stored));
+            for ((p, q), r) in own.iter().zip(&other).zip(&again) {
+                let expected = Vec3::new(cosine * p.x + sine * p.z, p.y, cosine * p.z - sine * p.x);
+                assert!((*q - expected).norm() < 1e-9, "{name}, frame {frame}: {p:?} {q:?}");
+                assert!((*p - *r).norm() < 1e-9, "{name}, frame {frame}, back");
+            }
+        }
+    }
+    assert!(turned_models >= 5, "{turned_models}");
 }

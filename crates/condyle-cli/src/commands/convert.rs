@@ -88,7 +88,7 @@ const WRITTEN: [ContentKind; 4] =
 
 /// The supported conversions, for the message about any other.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
-                     to .glb, .bvh or .usda (an animation), .trc or .c3d (the model's markers), and poses (.json) to all \
+                     to .glb, .bvh or .usda (an animation), to .amc where the model is an .asf, .trc or .c3d (the model's markers), and poses (.json) to all \
                      of these, with --rate as key poses; a skeleton with its motion (.bvh, .amc, .glb, .gltf, .fbx, .npz) to all of these \
                      without --model, and as a model; all of these motions for another figure with --onto; a model (.osim, .urdf, .toml, .json, .asf, or a shipped one by name) to .toml, .json (resolved), .glb, .bvh, .osim, .urdf, .mjcf or .usda; \
                      a recording (.trc, .c3d) to .trc, .c3d or .csv, with --analog its channels to .csv, .mot or .sto";
@@ -268,7 +268,20 @@ impl Convert {
             say(&format!("note: {}: lengths are in cm (--length-unit)", self.output.display()));
         }
         let unit = unit.unwrap_or(bvh::USUAL_UNIT);
+        let turned = (!self.is_of_skeleton()).then(|| encode::ahead(model));
+        let model = turned.as_ref().unwrap_or(model);
         Ok(warned(&self.output, encode::skeleton(target, model, motion, self.mode(), unit)?))
+    }
+
+    /// Whether what is written is a figure that a file of skeletons holds, which goes back as it looks.
+    fn is_of_skeleton(&self) -> bool {
+        let file = self.onto.onto.as_ref().or(self.model.as_ref()).unwrap_or(&self.input);
+        Format::of_ending(&open::ending(file)).is_some_and(|format| {
+            matches!(
+                format.id,
+                Id::Bvh | Id::Asf | Id::Amc | Id::Skel | Id::Glb | Id::Gltf | Id::Fbx
+            )
+        })
     }
 
     fn motion_as(&self, moving: Moving, target: &Format) -> Result<Vec<u8>, Failure> {
@@ -338,7 +351,8 @@ impl Convert {
                 let file = open::reanimated(path, &carried, driven, &self.name())?;
                 return Ok(warned(path, file));
             }
-            return self.written(&onto, carried, target);
+            let path = self.onto.onto.as_ref().unwrap_or(&self.input);
+            return self.written(path, &onto, carried, target);
         }
         if self.limits == Limits::On {
             let legal::Kept { solved, lost } = legal::keep(model, &mut motion);
@@ -356,12 +370,13 @@ impl Convert {
                 ));
             }
         }
-        self.written(model, motion, target)
+        self.written(self.model.as_ref().unwrap_or(&self.input), model, motion, target)
     }
 
-    /// A motion of a model in another format.
+    /// A motion of a model, which is that of a file, in another format.
     fn written(
         &self,
+        of: &Path,
         model: &Model,
         mut motion: Motion,
         target: &Format,
@@ -370,6 +385,10 @@ impl Convert {
             Id::Glb => return self.scene(model, &motion),
             Id::Bvh | Id::Usda => return self.skeleton(target, model, &motion),
             Id::Trc | Id::C3d => return self.virtual_markers(model, &motion, target),
+            Id::Amc => {
+                motion.make_effective(&Program::compile(model), self.mode());
+                return Ok(warned(of, open::take_written(of, &motion)?));
+            }
             _ => motion.make_effective(&Program::compile(model), self.mode()),
         }
         format::encoded(target, model, &motion, &self.name(), None, &[])

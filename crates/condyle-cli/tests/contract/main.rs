@@ -12,6 +12,7 @@ mod document;
 mod fk;
 mod info;
 #[cfg(unix)]
+mod keypoints;
 mod kill;
 mod leg;
 mod limits;

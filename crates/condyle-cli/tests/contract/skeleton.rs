@@ -82,3 +82,48 @@ fn a_take_needs_its_skeleton() {
         assert!(run.expect(0).contains("femur/rx"));
     }
 }
+
+#[test]
+fn a_take_is_written_as_a_take() {
+    let folder = Folder::new("skeleton-take-written");
+    let skeleton = ":units\n length 0.45\n angle deg\n:root\n order TX TY TZ RX RY RZ\n:bonedata\n begin\n \
+        name femur\n direction 0 -1 0\n length 7\n axis 0 0 0 XYZ\n dof rx\n end\n:hierarchy\n begin\n \
+        root femur\n end\n";
+    let take = ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 17.5 0 0 0 0\nfemur 90\n2\nroot 0 17.25 0 0 10 0\nfemur 45\n";
+    folder.write("anna.asf", skeleton).write("anna_1.amc", take);
+    // Through itself, and through a table.
+    folder.condyle(&["convert", "anna_1.amc", "again.amc"]).expect(0);
+    assert_eq!(folder.read("again.amc"), take);
+    folder.condyle(&["convert", "anna_1.amc", "a.csv"]).expect(0);
+    folder.condyle(&["convert", "a.csv", "third.amc", "--model", "anna.asf"]).expect(0);
+    assert_eq!(folder.read("third.amc"), take);
+    folder.write("leg.bvh", "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\nFrames: 1\nFrame Time: 1\n0\n");
+    let none = folder.condyle(&["convert", "leg.bvh", "leg.amc"]);
+    assert_eq!(none.code, 2);
+    assert!(none.err.contains("--onto"), "{}", none.err);
+}
+
+#[test]
+fn a_model_goes_to_bvh_looking_along_z_and_a_skeleton_as_it_is() {
+    let folder = Folder::new("skeleton-facing");
+    // A model looks along +x unless it says otherwise: its nose is 10 cm ahead.
+    let model = "condyle = 1\nkind = \"model\"\nname = \"nose\"\n[segment]\nhead = { at = [0, 1.6, 0] }\n\
+                 nose = { parent = \"head\", at = [0.1, 0, 0] }\n";
+    folder.write("nose.toml", model);
+    let nose = |file: &str| {
+        let found = folder.condyle(&["fk", file, "--length-unit", "cm", "--up-axis", "y"]).json();
+        translation(&found["frames"][0], "nose")
+    };
+    folder.condyle(&["convert", "nose.toml", "nose.bvh", "--length-unit", "cm"]).expect(0);
+    for (found, expected) in nose("nose.bvh").iter().zip([0.0, 1.6, 0.1]) {
+        assert!((found - expected).abs() < 1e-9, "{:?}", nose("nose.bvh"));
+    }
+    // One that was read from a skeleton file looks where it looked.
+    let text = "HIERARCHY\nROOT head\n{\nOFFSET 0 160 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT nose\n{\n\
+                OFFSET 10 0 0\nCHANNELS 0\nEnd Site\n{\nOFFSET 1 0 0\n}\n}\n}\nMOTION\nFrames: 1\n\
+                Frame Time: 0.1\n0 0 0\n";
+    folder.write("aside.bvh", text);
+    let again = ["convert", "aside.bvh", "again.bvh", "--length-unit", "cm", "--up-axis", "y"];
+    folder.condyle(&again).expect(0);
+    assert!((nose("again.bvh")[0] - 0.1).abs() < 1e-9, "{:?}", nose("again.bvh"));
+}

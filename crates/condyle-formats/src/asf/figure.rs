@@ -21,6 +21,8 @@ pub(super) struct Figure {
     /// Of each bone by its name in lower case: for each of its tokens the place among the stored numbers,
     /// and whether it is an angle.
     pub(super) places: HashMap<String, Vec<Option<(usize, bool)>>>,
+    /// The names of the bones as they are written, the root first, each after its parent.
+    pub(super) order: Vec<String>,
     /// Metres in a unit of length.
     pub(super) unit: f64,
     pub(super) degrees: bool,
@@ -90,6 +92,7 @@ pub(super) fn figure(bytes: &[u8], assumed: &Assumed) -> Result<Read<Figure>, Er
     let figure = Figure {
         model: read.value,
         places,
+        order: tree.iter().map(|(bone, _)| written_of(&written, *bone).name.clone()).collect(),
         unit,
         degrees: written.degrees,
         position: Vec3::from(written.root.direction) * unit,

@@ -1,7 +1,8 @@
 //! ASF and AMC, the skeletons of Acclaim and the motions of them.
 //!
 //! An `.asf` file is a skeleton with the limits of its joints ([`read`]), an `.amc` file the angles of one
-//! take, frame by frame, which mean nothing without their skeleton ([`with_skeleton`]).
+//! take, frame by frame, which mean nothing without their skeleton ([`with_skeleton`]). Takes are written of
+//! motions of a skeleton that is there ([`write()`]).
 //!
 //! ```text
 //! asf       = { ":" keyword content }          "#" starts a comment; commas and parentheses are spaces
@@ -40,6 +41,8 @@ mod figure;
 mod read;
 mod take;
 mod words;
+mod write;
 
 pub use figure::read;
 pub use take::with_skeleton;
+pub use write::write;

@@ -8,7 +8,7 @@ use condyle_diagnostics::{Diagnostic, Error, Read, Warnings, listed};
 use condyle_motion::{Animation, Motion};
 
 /// Frames per second of the Carnegie Mellon recordings, taken where it is not told.
-const USUAL_RATE: f64 = 120.0;
+pub(super) const USUAL_RATE: f64 = 120.0;
 
 /// Reads an AMC file with the ASF file of its skeleton: the model and its motion.
 ///

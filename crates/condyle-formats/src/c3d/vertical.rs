@@ -98,7 +98,7 @@ pub(super) fn find(
         (Some(axis), _, _) => (axis, "as the force platforms lie"),
         (None, Some(up), _) => (up.axis, "as POINT:Y_SCREEN says"),
         (None, None, false) => match guess() {
-            Some(axis) => (axis, "as only there no marker is below a floor at zero"),
+            Some(found) => found,
             None => return Up::Y,
         },
         (None, None, true) => return Up::Y,
@@ -144,27 +144,53 @@ fn flat_axis(parameters: &Parameters) -> Option<u8> {
     (span[least] < 0.02 * span[middle]).then_some(least as u8)
 }
 
-/// The only axis along which all markers are between a floor at zero and the height of a person.
-fn only_floor(points: &[[f64; 3]], scale: f64) -> Option<u8> {
+/// The only axis along which all markers are between a floor at zero and the height of a person; of several such axes, as
+/// where people stand in one corner of the laboratory, the only one along which some of them are on that floor.
+fn only_floor(points: &[[f64; 3]], scale: f64) -> Option<(u8, &'static str)> {
     if points.len() < 4 {
         return None;
     }
-    let floors = [0u8, 1, 2].map(|axis| {
-        let along = || points.iter().map(|p| scale * p[usize::from(axis)]);
-        let below = along().filter(|x| *x < -0.05).count();
-        let high = along().fold(f64::NEG_INFINITY, f64::max);
-        200 * below <= points.len() && (0.3..3.0).contains(&high)
-    });
-    let mut found = (0u8..3).filter(|&axis| floors[usize::from(axis)]);
-    match (found.next(), found.next()) {
-        (Some(axis), None) => Some(axis),
+    let along = |axis: u8| points.iter().map(move |p| scale * p[usize::from(axis)]);
+    let share = |axis: u8, height: f64| {
+        along(axis).filter(|x| *x < height).count() as f64 / points.len() as f64
+    };
+    let is_floor = |axis: &u8| {
+        let high = along(*axis).fold(f64::NEG_INFINITY, f64::max);
+        share(*axis, -0.05) <= 0.005 && (0.3..3.0).contains(&high)
+    };
+    let only = |axes: &[u8]| match axes {
+        [axis] => Some(*axis),
         _ => None,
-    }
+    };
+    let floors: Vec<u8> = (0..3).filter(is_floor).collect();
+    // Feet are a twentieth of all markers or more, and nothing else is lower than 20 cm for long.
+    let stood: Vec<u8> = floors.iter().copied().filter(|&axis| share(axis, 0.2) >= 0.05).collect();
+    let far = floors.iter().all(|&axis| stood.contains(&axis) || share(axis, 0.3) == 0.0);
+    let one = only(&floors).map(|axis| (axis, "as only there no marker is below a floor at zero"));
+    let other = || only(&stood).map(|axis| (axis, "as only there markers are on a floor at zero"));
+    one.or_else(|| other().filter(|_| far))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn who_stands_in_a_corner_stands_on_the_floor() {
+        // Two feet, two knees, a head, one and two metres from the origin.
+        let one = |x: f64| {
+            [0.05, 0.08, 0.5, 0.52, 1.7]
+                .map(|height| [x + 0.1 * height, 2.0 - 0.2 * height, height])
+        };
+        let points: Vec<[f64; 3]> = [1.0, 1.1, 1.2].into_iter().flat_map(one).collect();
+        assert_eq!(only_floor(&points, 1.0).map(|found| found.0), Some(2));
+        // Without feet it is not known.
+        let above: Vec<[f64; 3]> = points.iter().map(|[x, y, z]| [*x, *y, z + 0.4]).collect();
+        assert_eq!(only_floor(&above, 1.0), None);
+        // Beside the origin only one axis has a floor.
+        let beside: Vec<[f64; 3]> = above.iter().map(|[x, y, z]| [x - 1.1, y - 1.8, *z]).collect();
+        assert_eq!(only_floor(&beside, 1.0).map(|found| found.0), Some(2));
+    }
 
     #[test]
     fn turns_are_rotations_that_bring_up_to_y_and_go_back() {

@@ -8,6 +8,7 @@ mod builder;
 mod check;
 mod closure;
 mod coordinate;
+mod heading;
 mod posture;
 mod scaling;
 mod segment;

@@ -14,7 +14,8 @@ use std::ops::Range;
 /// How far a part is off, over all frames, in radians.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// The part by its name, or `trunk`: the line from between the hips to the neck.
+    /// The part by its name, or `trunk`: the line from between the hips to between the shoulders as these rest on the
+    /// chest; where one of the figures has no two of these to the neck.
     pub name: String,
     /// Whether it is a line that points somewhere; else an orientation.
     pub line: bool,
@@ -116,7 +117,8 @@ pub(super) fn report(
         held.iter().map(|held| own.iter().any(|(d, _)| held.contains(d))).collect()
     };
     let lines = plan.lines.iter().zip(lines).map(|(line, angles)| {
-        let whole = line.weight > 0.5;
+        // Hands and fingers follow what is turned; collar bones are asked for by their lines alone.
+        let whole = line.weight > 0.2;
         (whole, fit(&line.name, true, angles, &limited(line.to.segment)))
     });
     let told = |part: Part| matches!(part, Part::Pelvis | Part::Chest | Part::Head | Part::Hand(_));

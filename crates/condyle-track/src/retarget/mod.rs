@@ -20,7 +20,7 @@
 //!    (`overturned`), with a warning.
 //! 2. **Question.** For each frame the target should meet, weighted, lines from joint to joint
 //!    ([`DirectionTarget`](crate::DirectionTarget): upper arm, forearm, thigh, shank, foot, and the trunk from
-//!    between the hips to the neck), orientations (strong for pelvis, chest, head and feet; weak for
+//!    between the hips to between the shoulders as these rest on the chest), orientations (strong for pelvis, chest, head and feet; weak for
 //!    limbs, where they only tell the twist: a bent elbow or knee tells it better), and a place between the
 //!    hips
 //!
@@ -105,7 +105,7 @@ pub fn retarget(
     let mut warnings = vec![];
     let from = Stance::of_motion(source, motion, &mut warnings)?;
     let to = Stance::of_defaults(target, &mut warnings)?;
-    let necks = [source, target].iter().all(|figure| figure.body.get(Part::Neck).is_some());
+    let necks = sampled::by_necks([source, target]);
     let mut sampled = Sampled::new(source, motion, &from, &to, necks)?;
     overturned::turn_back(&mut sampled, &mut warnings);
     sampled.settle_soles(&from, &to);

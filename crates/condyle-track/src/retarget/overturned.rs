@@ -6,10 +6,10 @@
 //! leaves the line from ankle to ball, or from wrist to knuckles, where it is.
 //!
 //! What is looked at is the twist of the part against the one before it: with R the frame in which a straight limb would
-//! carry it and A its own, the rotation A Rᵀ is a swing and a twist φ about the part's length,
+//! carry it and A its own, the rotation Rᵀ A is a twist φ about the part's length, its first axis, and a swing,
 //!
 //! ```text
-//! φ = 2 atan2(q · a, w),      (q, w) the quaternion of A Rᵀ, a the first axis of A
+//! φ = 2 atan2(q · x, w),      (q, w) the quaternion of Rᵀ A, x the first axis
 //! ```
 
 use super::body::{Finger, Part, Side};
@@ -22,8 +22,14 @@ use std::f64::consts::PI;
 const FOOT: f64 = 120.0 * PI / 180.0;
 /// A hand that is: from where palms face down in a T people turn forearms by about 90 degrees either way.
 const HAND: f64 = 135.0 * PI / 180.0;
-/// One that was turned over is so until its twist is less than this.
+/// One that was turned over is so until its twist is less than this, or less than a right angle after another jump.
 const BACK: f64 = 60.0 * PI / 180.0;
+const SQUARE: f64 = 0.5 * PI;
+/// It is turned over by a jump of more than this from one frame to the next. What turns too far little by little is followed:
+/// to turn it back would be a jump that the recording has not.
+const JUMP: f64 = 60.0 * PI / 180.0;
+/// A jump may take a few frames: so many seconds.
+const SOON: f64 = 0.1;
 
 /// Turns back what is turned over, with all parts beyond it.
 pub(super) fn turn_back(sampled: &mut Sampled, warnings: &mut Vec<Diagnostic>) {
@@ -53,12 +59,28 @@ fn settle(
     else {
         return;
     };
+    let relative: Vec<Mat3> = carriers
+        .iter()
+        .zip(own)
+        .map(|(carrier, own)| (*carrier * carried).transpose() * *own)
+        .collect();
     let mut over = vec![false; own.len()];
-    let mut now = false;
-    for ((over, carrier), own) in over.iter_mut().zip(carriers).zip(own) {
-        let twist = twist(*own * (*carrier * carried).transpose(), own.x);
-        now = twist.abs() > if now { BACK } else { most };
-        *over = now;
+    // Where it jumped last; it may have been so from the beginning.
+    let (mut now, mut jumped) = (false, 0);
+    for frame in 0..relative.len() {
+        let turn = |frame: usize| Quat::from_mat3(relative[frame]);
+        let jumps = frame > 0 && turn(frame).angle_to(turn(frame - 1)) > JUMP;
+        if jumps {
+            jumped = frame;
+        }
+        let twist = twist(relative[frame], Vec3::X).abs();
+        let soon = sampled.times[frame] - sampled.times[jumped] <= SOON;
+        now = match (now, jumps) {
+            (false, _) => twist > most && soon,
+            (true, true) => twist > SQUARE,
+            (true, false) => twist > BACK,
+        };
+        over[frame] = now;
     }
     let Some(first) = over.iter().position(|over| *over) else { return };
     // About the line to the next joint where it is known, else about the frame's own first axis.
@@ -118,7 +140,7 @@ mod tests {
             let swing = Quat::from_axis_angle(Vec3::new(0.0, 0.6, 0.8), 0.9);
             let own = Quat::from_axis_angle(line, degrees.to_radians());
             let rotation = swing * own;
-            let found = twist(rotation.to_mat3(), swing.to_mat3() * line).to_degrees();
+            let found = twist(rotation.to_mat3(), line).to_degrees();
             assert!((found - degrees).abs() < 1e-9, "{degrees}: {found}");
         }
     }

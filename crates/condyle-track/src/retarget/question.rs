@@ -2,7 +2,7 @@
 
 use super::body::{Anchor, Part, Side};
 use super::feet::Feet;
-use super::sampled::{Sampled, middle, trunk};
+use super::sampled::{Sampled, by_necks, middle, trunk};
 use super::stance::{Stance, arc, unit};
 use super::{Humanoid, Options, Posed, held};
 use crate::answer::FrameAnswer;
@@ -15,6 +15,7 @@ use condyle_math::{Mat3, Quat, Vec3};
 use condyle_model::{CoordinateId, CoordinateKind, JointSetId, SegmentId};
 use condyle_motion::Motion;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// Weights, m² per rad² and per m²; lines have 1.
 mod weight {
@@ -56,6 +57,8 @@ const JUMP: f64 = 0.5;
 /// On such a way no part turns by more in a step, radians.
 const STRIDE: f64 = 0.2;
 
+/// A frame is solved to this share of what is minimised.
+const TOLERANCE: f64 = 1e-6;
 /// A frame jumps to another posture that the target could have if that is so much better.
 const BETTER: f64 = 0.9;
 
@@ -131,9 +134,8 @@ impl Plan {
         if !plan.neck.is_empty() {
             plan.turns.retain(|turn| turn.part != Part::Neck);
         }
-        let necks = [source, target].map(|figure| figure.body.get(Part::Neck).is_some());
         if let (Some((low, high)), Some(wanted)) =
-            (trunk(target, necks[0] && necks[1]), sampled.trunk.clone())
+            (trunk(target, by_necks([source, target])), sampled.trunk.clone())
         {
             let line =
                 Line { name: "trunk".into(), from: low, to: high, weight: weight::LINE, wanted };
@@ -214,10 +216,10 @@ impl Plan {
         let open = Options { limits: false, ..options };
         let free = (options.limits && start.is_none())
             .then(|| self.solve(target, open, None, None, times, &mut || {}));
-        let first = (!options.limits && start.is_none()).then(|| self.first(target)).flatten();
+        let first = start.is_none().then(|| self.first(target)).flatten();
         let steps = self.steps(times.len(), start.is_some());
         let targets = self.targets(target, &steps, feet);
-        let rules = Rules { limits: options.limits, tolerance: 1e-6 };
+        let rules = Rules { limits: options.limits, tolerance: TOLERANCE };
         let tracker = Tracker::new(target.model.with_locked(held::held(target)), targets, rules);
         let mut scratch = Scratch::new(&tracker);
         let mut answer = FrameAnswer::start(&tracker.defaults);
@@ -266,22 +268,37 @@ impl Plan {
         Motion { times: times.to_vec(), frames }
     }
 
-    /// The posture of the first frame within limits, by way from rest: where a motion without limits begins.
+    /// The posture of the first frame within limits, by way from rest: where motions begin, those without limits too.
     ///
-    /// From a posture in which an arm hangs it can be raised in either direction of its plane of elevation; an elevation
-    /// below 0 fits as well, but not what a rhythm makes of it.
+    /// An elevation below 0 fits as well as the other plane, but not what a rhythm makes of it. The way is gone with limits
+    /// and without them, as these may lead a limb to where it ends at another one; what is better in the end counts.
     fn first(&self, target: Humanoid<'_>) -> Option<Vec<f64>> {
         let steps = self.steps(1, false);
-        let targets = self.targets(target, &steps, None);
-        let rules = Rules { limits: true, tolerance: 1e-6 };
-        let tracker = Tracker::new(target.model.with_locked(held::held(target)), targets, rules);
-        let mut scratch = Scratch::new(&tracker);
-        let mut answer = FrameAnswer::start(&tracker.defaults);
-        for step in 0..steps.len() {
-            tracker.descend(&mut scratch, &[], step, &mut answer);
-            tracker.cross_bounds(&mut scratch, &[], step, &mut answer);
+        let last = steps.len().checked_sub(1)?;
+        let model = Arc::new(target.model.with_locked(held::held(target)));
+        let [mut held, mut open] = [true, false].map(|limits| {
+            let targets = self.targets(target, &steps, None);
+            let rules = Rules { limits, tolerance: TOLERANCE };
+            let tracker = Tracker::new(Arc::clone(&model), targets, rules);
+            let scratch = Scratch::new(&tracker);
+            let answer = FrameAnswer::start(&tracker.defaults);
+            (tracker, scratch, answer)
+        });
+        for (tracker, scratch, answer) in [&mut held, &mut open] {
+            for step in 0..steps.len() {
+                tracker.descend(scratch, &[], step, answer);
+                tracker.cross_bounds(scratch, &[], step, answer);
+            }
         }
-        answer.coordinates.iter().all(|value| value.is_finite()).then_some(answer.coordinates)
+        let (tracker, mut scratch, mut best) = held;
+        let mut other = FrameAnswer::start(&open.2.coordinates);
+        tracker.rename(&mut other.coordinates);
+        tracker.solve_into(&mut scratch, &[], last, &mut other);
+        tracker.cross_bounds(&mut scratch, &[], last, &mut other);
+        if other.minimised() < BETTER * best.minimised() {
+            best = other;
+        }
+        best.coordinates.iter().all(|value| value.is_finite()).then_some(best.coordinates)
     }
 
     /// All frames, with ways from rest and across jumps unless each has a start of its own.

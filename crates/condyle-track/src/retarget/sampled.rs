@@ -33,8 +33,19 @@ pub(super) struct Sampled {
     pub stands: BTreeMap<Part, Vec<Range<usize>>>,
 }
 
-/// Where a trunk begins and ends: between the hips, fixed in the pelvis, and at the neck or, without one,
-/// between the shoulders as they are at rest, fixed in the chest.
+/// Whether the trunks of two figures have to end at their necks: where one has no chest with two shoulders. Skeletons have
+/// their lowest joint of the neck anywhere from the middle of the chest to its top; shoulders are at one height in all.
+pub(super) fn by_necks(figures: [Humanoid<'_>; 2]) -> bool {
+    let all = |part: fn(Side) -> Part| {
+        let has = |figure: &Humanoid<'_>, side: Side| figure.body.get(part(side)).is_some();
+        figures.iter().all(|figure| Side::BOTH.iter().all(|side| has(figure, *side)))
+    };
+    let both = |part: Part| figures.iter().all(|figure| figure.body.get(part).is_some());
+    both(Part::Neck) && !(both(Part::Chest) && all(Part::UpperArm))
+}
+
+/// Where a trunk begins and ends: between the hips, fixed in the pelvis, and between the shoulders as they are at rest,
+/// fixed in the chest, or at the neck.
 pub(super) fn trunk(figure: Humanoid<'_>, neck: bool) -> Option<(Anchor, Anchor)> {
     let mut posed = Posed::new(figure.model);
     let pose = posed.at(&figure.model.defaults()).ok()?;

@@ -4,6 +4,7 @@ use super::{Cause, OpenError, ending, failed, source};
 use condyle_diagnostics::{Diagnostic, Error, Read};
 use condyle_formats::skeleton::Assumed;
 use condyle_formats::{Content, asf};
+use condyle_motion::Motion;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -78,4 +79,23 @@ pub(super) fn take(
         read.warnings.insert(0, Diagnostic::note("amc/skeleton", how));
     }
     Ok(read)
+}
+
+/// A motion as a take of a skeleton, which is an `.asf`, or that of an `.amc`.
+///
+/// # Errors
+/// `amc/skeleton` if the path is that of another format; what [`asf::write`] finds wrong.
+pub fn written(path: &Path, motion: &Motion) -> Result<Read<Vec<u8>>, OpenError> {
+    let wrong = |path: &Path, error| failed(path, Cause::Content { error, text: None });
+    let skeleton = match ending(path).as_str() {
+        "asf" => path.to_owned(),
+        "amc" => skeleton_of(path).map_err(|error| wrong(path, error))?.0,
+        _ => {
+            let error = Error::new("amc/skeleton", "a take is of a skeleton, an .asf file");
+            let help = "give it with --onto, which carries the motion over, or with --model if it is the motion's own";
+            return Err(wrong(path, error.with_help(help)));
+        }
+    };
+    let text = asf::write(motion, &source::bytes(&skeleton)?, &source::assumed());
+    Ok(text.map_err(|error| wrong(&skeleton, error))?.map(String::into_bytes))
 }

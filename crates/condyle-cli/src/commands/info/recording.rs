@@ -31,6 +31,19 @@ fn duration(recording: &Recording) -> f64 {
     }
 }
 
+/// How sure each marker is on average, over the frames in which it was seen; `None` where the file does not say it.
+fn confidences(recording: &Recording) -> Option<Vec<f64>> {
+    recording.confidences.as_ref()?;
+    let mean = |marker: usize| {
+        let seen = (0..recording.frames()).filter(|&f| recording.position(f, marker).is_some());
+        let (sum, count) = seen.fold((0.0, 0.0), |(sum, count), frame| {
+            (sum + recording.confidence(frame, marker), count + 1.0)
+        });
+        if count > 0.0 { sum / count } else { 0.0 }
+    };
+    Some((0..recording.labels.len()).map(mean).collect())
+}
+
 pub(super) fn to_json(recording: &Recording) -> Value {
     let markers: Vec<Value> = recording
         .labels
@@ -54,6 +67,12 @@ pub(super) fn to_json(recording: &Recording) -> Value {
         "unit": recording.units.name(),
         "markers": markers,
     });
+    if let (Some(means), Some(markers)) = (confidences(recording), whole["markers"].as_array_mut())
+    {
+        for (marker, mean) in markers.iter_mut().zip(means) {
+            marker["mean_confidence"] = json!(mean);
+        }
+    }
     let subjects = recording.subjects();
     if !subjects.is_empty() {
         let names = subjects.iter().map(|(name, count)| json!({ "name": name, "markers": count }));
@@ -81,6 +100,12 @@ pub(super) fn to_text(recording: &Recording) -> String {
     if !subjects.is_empty() {
         let subjects: Vec<&str> = subjects.iter().map(String::as_str).collect();
         text.push_str(&wrapped("subjects:", &subjects));
+    }
+    if let Some(means) = confidences(recording) {
+        let told: Vec<String> =
+            names.iter().zip(&means).map(|(name, mean)| format!("{name} {mean:.2}")).collect();
+        let told: Vec<&str> = told.iter().map(String::as_str).collect();
+        text.push_str(&wrapped("mean confidence, where seen:", &told));
     }
     let frames = recording.frames().max(1) as f64;
     let mut rows = vec![];
