@@ -137,3 +137,51 @@ fn a_foreign_skeleton_comes_back_with_only_its_bad_joint_changed() {
     assert!(refused.contains("no coordinate `Arn.rz`"), "{refused}");
     assert!(refused.contains("did you mean `Arm.rz`?"), "{refused}");
 }
+
+/// Rotations spread evenly over the ball of 60 degrees, but for one of 25 about a turn of 25 degrees about x.
+fn rotations() -> String {
+    let mut text = "qx,qy,qz,qw\n".to_owned();
+    // A lattice in the vector part of quaternions, 5 degrees apart.
+    for i in 0..21 * 21 * 21 {
+        let at = [i % 21, i / 21 % 21, i / 441].map(|n: i32| f64::from(n - 10) * 0.05);
+        let size = at.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let w = (1.0 - size * size).max(0.0).sqrt();
+        let half = 12.5f64.to_radians();
+        let off = 2.0 * (at[0] * half.sin() + w * half.cos()).abs().min(1.0).acos();
+        if size <= 30f64.to_radians().sin() && off > 25f64.to_radians() {
+            text += &format!("{},{},{},{w}\n", at[0], at[1], at[2]);
+        }
+    }
+    text
+}
+
+#[test]
+fn what_nobody_was_recorded_in_is_left_with_strict_only() {
+    let folder = Folder::new("constrain-strict");
+    folder.write("q.csv", rotations());
+    folder.condyle(&["learn", "limits", "q.csv", "-o", "limit.toml"]).expect(0);
+    folder.write(
+        "arm.toml",
+        "condyle = 1\nkind = \"model\"\n[segment.arm]\n[joint_set.shoulder.coordinate.swing]\n\
+         kind = \"orientation\"\n[joint_set.shoulder.component.seen.field]\norientation = \"swing\"\n\
+         file = \"limit.toml\"\n[joint_set.shoulder.component.turn.ball]\norientation = \"seen\"\n\
+         [joint_set.shoulder.output]\narm = \"turn\"\n",
+    );
+    // From rest to 80 degrees about x: through the middle of the hole, and out of the ball.
+    let mut text = "time,swing.qx,swing.qy,swing.qz,swing.qw\n".to_owned();
+    for frame in 0..=40 {
+        let half = f64::from(frame).to_radians();
+        text += &format!("{},{},0,0,{}\n", f64::from(frame) * 0.1, half.sin(), half.cos());
+    }
+    folder.write("m.csv", text);
+    let run = |more: &[&str]| -> Value {
+        let asked = [&["constrain", "arm.toml", "m.csv", "--json"], more].concat();
+        serde_json::from_slice(&folder.condyle(&asked).out).expect("JSON")
+    };
+    let changed = |report: &Value| report["changed"].as_u64().unwrap();
+    let (open, strict) = (run(&[]), run(&["--strict"]));
+    // Frames beyond 60 degrees are 31 to 40; those within 25 of the middle 0 to 25.
+    assert!((9..=12).contains(&changed(&open)), "{open}");
+    assert!(open["violations"].as_array().unwrap().iter().any(|v| v["kind"] == "unseen"), "{open}");
+    assert!(changed(&strict) > changed(&open) + 10, "{strict}");
+}
