@@ -10,6 +10,8 @@ use crate::glb;
 #[cfg(feature = "opensim")]
 use crate::opensim::{self, setup};
 use crate::skeleton::Assumed;
+#[cfg(feature = "smpl")]
+use crate::smpl;
 #[cfg(feature = "document")]
 use crate::text::utf8;
 #[cfg(feature = "urdf")]
@@ -190,6 +192,8 @@ pub enum Id {
     Asf,
     /// Takes of Acclaim's skeletons.
     Amc,
+    /// Poses and bodies of SMPL.
+    Smpl,
 }
 
 /// The text of another file by its path as seen from the one that is read; else a sentence.
@@ -447,6 +451,26 @@ pub const FORMATS: &[Format] = &[
         read: |_, _| {
             let message = "a take means nothing without its skeleton, an .asf file";
             Err(Error::new("amc/skeleton", message).with_help("read it with its skeleton"))
+        },
+    },
+    #[cfg(feature = "smpl")]
+    Format {
+        id: Id::Smpl,
+        name: "npz",
+        title: "poses of SMPL, SMPL-H and SMPL-X, and their bodies",
+        endings: &["npz"],
+        reads: &[ContentKind::Motion, ContentKind::Model],
+        writes: &[],
+        sniff: smpl::is_npz,
+        read: |bytes, _| {
+            if smpl::is_body(bytes) {
+                let Read { value: rest, warnings } = smpl::rest(bytes)?;
+                let mut read = rest.model()?;
+                read.warnings.extend(warnings);
+                return Ok(read.map(Content::Model));
+            }
+            let message = "poses of SMPL mean nothing without the places of joints, a body";
+            Err(Error::new("smpl/rest", message).with_help("read them with a body"))
         },
     },
     Format {

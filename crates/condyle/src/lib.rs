@@ -267,6 +267,7 @@
 //! The last two rows are features: without them nothing that reads a file is compiled.
 
 #[cfg(feature = "formats")]
+pub mod constraining;
 pub mod encode;
 mod figure;
 pub mod legal;

@@ -75,8 +75,12 @@ fn read_kind<T>(
 ) -> Result<Read<T>, Error> {
     let mut texts = Texts::default();
     let value = include::load(&mut texts, form, text, include).and_then(|entries| {
-        let mut reader =
-            Reader { texts: &mut texts, constants: HashMap::new(), given: HashMap::new() };
+        let mut reader = Reader {
+            texts: &mut texts,
+            constants: HashMap::new(),
+            given: HashMap::new(),
+            include: &mut *include,
+        };
         if let Some(constants) = entries.iter().find(|e| e.key.text == "constants") {
             reader.define(&constants.node);
         }

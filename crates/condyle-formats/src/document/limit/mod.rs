@@ -30,6 +30,7 @@
 
 mod write;
 
+pub(super) use write::named_keys;
 pub use write::write;
 
 use super::fields::{Fields, Reader};

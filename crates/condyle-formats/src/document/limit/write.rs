@@ -14,15 +14,20 @@ const WIDTH: usize = 100;
 #[must_use]
 pub fn write(limit: &LearnedLimit) -> String {
     let mut out = String::from("condyle = 1\nkind = \"limit\"\n");
-    if !limit.about().name.is_empty() {
-        let _ = writeln!(out, "name = {}", text(&limit.about().name));
-    }
-    keys(&mut out, limit, "");
+    named_keys(&mut out, limit, "");
     out
 }
 
+/// As [`keys`], its name before them.
+pub(in crate::document) fn named_keys(out: &mut String, limit: &LearnedLimit, within: &str) {
+    if !limit.about().name.is_empty() {
+        let _ = writeln!(out, "name = {}", text(&limit.about().name));
+    }
+    keys(out, limit, within);
+}
+
 /// The keys and tables of a limit, whose tables are below `within`, which ends with a dot or is empty.
-pub(in crate::document) fn keys(out: &mut String, limit: &LearnedLimit, within: &str) {
+fn keys(out: &mut String, limit: &LearnedLimit, within: &str) {
     let about = limit.about();
     let _ = writeln!(out, "child = {}", text(&about.child));
     let mut line = |key: &str, value: &str| {

@@ -2,12 +2,14 @@
 //!
 //! ```text
 //! Cloud -> Ground               axes               samples as files hold them, the cloud's axes
-//!       -> distances at nodes   closing, nearest   what no empty ball covers, with a layer, holes carved
+//!       -> distances at nodes   closing, nearest   what no empty ball covers, holes carved
+//!                               layer              what samples leave before a boundary, evened out
 //!       -> Field                condyle-model      a cubic spline over all rotations, and its answers
 //! ```
 
 mod axes;
 mod closing;
+mod layer;
 mod nearest;
 
 pub use condyle_model::limit::field::{
@@ -122,6 +124,6 @@ fn grid(ground: &Ground) -> Grid {
         valid: (outer - hollow) / all,
         holes: holes.collect(),
     };
-    let closing::Closing { outer, carved, samples: near, counts, .. } = found;
-    Grid { lattice, outer, carved, near, counts, learned }
+    let closing::Closing { outer, carved, samples: near, counts, boundary, .. } = found;
+    Grid { lattice, outer, carved, near, counts, boundary, learned }
 }

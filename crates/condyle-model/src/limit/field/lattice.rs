@@ -84,6 +84,46 @@ impl Lattice {
         ]
     }
 
+    /// The eight of every other node about a quaternion, as [`super::Boundary`] counts them.
+    #[inline]
+    pub(super) fn every_other(&self, q: Quat) -> [usize; 8] {
+        let (cell, _) = self.cell(mapped(q));
+        let [i, j, k] = cell.map(|c| c / 2);
+        let half = self.edge.div_ceil(2);
+        let first = (k * half + j) * half + i;
+        let above = first + half * half;
+        let row = |start| [start, start + 1, start + half, start + half + 1];
+        let ([a, b, c, d], [e, f, g, h]) = (row(first), row(above));
+        [a, b, c, d, e, f, g, h]
+    }
+
+    /// The first nodes of the cells whose coefficients make the value at a rotation with w ≥ 0.
+    #[inline]
+    pub(super) fn cells(&self, q: Quat) -> impl Iterator<Item = usize> + use<> {
+        let first = |q: Quat| {
+            let ([i, j, k], _) = self.cell(mapped(q));
+            (k * self.edge + j) * self.edge + i
+        };
+        [Some(first(q)), (q.w < OVERLAP).then(|| first(-q))].into_iter().flatten()
+    }
+
+    /// For each cell, by its first node, whether any of the coefficients that make its values differ.
+    pub(super) fn differing(&self, one: &[f32], other: &[f32]) -> Vec<bool> {
+        let mut differ: Vec<bool> =
+            one.iter().zip(other).map(|(a, b)| a.to_bits() != b.to_bits()).collect();
+        for stride in [1, self.edge, self.edge * self.edge] {
+            let from = differ.clone();
+            for (node, differ) in differ.iter_mut().enumerate() {
+                let at = |n: usize| from.get(n).copied().unwrap_or(false);
+                *differ = at(node.wrapping_sub(stride))
+                    || at(node)
+                    || at(node + stride)
+                    || at(node + 2 * stride);
+            }
+        }
+        differ
+    }
+
     /// The cell of a place, such that a cubic spline has all its coefficients, and the place in it.
     #[inline]
     fn cell(&self, x: [f64; 3]) -> ([usize; 3], [f64; 3]) {

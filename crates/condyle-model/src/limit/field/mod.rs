@@ -5,6 +5,7 @@
 //! Ground -> distances at nodes  condyle-learn      what no empty ball covers, with a layer, holes carved
 //!        -> a smooth function   chart, lattice     a cubic spline over all rotations
 //! rotation -> Answer            projection         state, distance, nearest valid rotation, evidence
+//!                               boundary           where its search begins
 //! ```
 //!
 //! Distances are angles of rotation in radians, positive inside, and go on outside everywhere. `q` and `-q` give the same
@@ -17,12 +18,15 @@
 //!
 //! The distance is that to what is valid: negative in holes too.
 
+mod boundary;
 mod chart;
 mod lattice;
 mod learned;
+mod outer;
 mod packed;
 mod projection;
 
+pub use boundary::Boundary;
 pub use chart::Chart;
 pub use lattice::Lattice;
 pub use learned::{About, LearnedLimit};
@@ -177,6 +181,8 @@ pub struct Grid {
     pub near: Vec<u32>,
     /// How many samples are within two spacings of each sample, itself among them.
     pub counts: Vec<u32>,
+    /// Places on the boundary of what is valid.
+    pub boundary: Boundary,
     /// What was learned, in numbers.
     pub learned: Learned,
 }
@@ -188,10 +194,15 @@ pub struct Field {
     chart: Chart,
     lattice: Lattice,
     samples: Vec<Quat>,
+    /// The same, to find the nearest.
+    small: Vec<[f32; 4]>,
     near: Vec<u32>,
     counts: Vec<u32>,
     outer: Vec<f32>,
     carved: Option<Vec<f32>>,
+    /// For each cell of the lattice whether a hole matters in it.
+    hollow: Vec<bool>,
+    boundary: Boundary,
     learned: Learned,
 }
 
@@ -199,16 +210,22 @@ impl Field {
     /// The field of distances at nodes.
     #[must_use]
     pub fn new(ground: Arc<Ground>, grid: Grid) -> Self {
-        let Grid { lattice, outer, carved, near, counts, learned } = grid;
+        let Grid { lattice, outer, carved, near, counts, boundary, learned } = grid;
+        let outer = lattice.coefficients(&outer);
+        let carved = carved.map(|values| lattice.coefficients(&values));
+        let samples: Vec<Quat> = ground.samples.iter().map(|q| ground.chart.inward(*q)).collect();
         Self {
-            samples: ground.samples.iter().map(|q| ground.chart.inward(*q)).collect(),
+            small: samples.iter().map(|q| q.to_array().map(|c| c as f32)).collect(),
+            samples,
             near,
             counts,
-            outer: lattice.coefficients(&outer),
-            carved: carved.map(|values| lattice.coefficients(&values)),
+            hollow: carved.as_ref().map_or(vec![], |carved| lattice.differing(&outer, carved)),
+            outer,
+            carved,
             chart: ground.chart,
             ground,
             lattice,
+            boundary,
             learned,
         }
     }
@@ -257,7 +274,10 @@ impl Field {
         if distance >= 0.0 {
             return State::Valid;
         }
-        let hole = self.carved.is_some() && self.lattice.value(&self.outer, q) >= 0.0;
+        // Elsewhere both splines have the same coefficients.
+        let hole = self.carved.is_some()
+            && self.lattice.cells(q).any(|cell| self.hollow.get(cell) == Some(&true))
+            && self.lattice.value(&self.outer, q) >= 0.0;
         if hole { State::Unknown } else { State::Invalid }
     }
 
@@ -277,18 +297,24 @@ impl Field {
         self.known(self.chart.inward(q))
     }
 
+    /// [`Field::state`] and [`Field::evidence`] at once.
+    #[inline]
+    #[must_use]
+    pub fn state_with_evidence(&self, q: Quat) -> (State, f64, Evidence) {
+        let q = self.chart.inward(q);
+        let distance = self.lattice.value(self.valid(), q);
+        (self.judged(q, distance), distance, self.known(q))
+    }
+
     fn known(&self, q: Quat) -> Evidence {
-        let (mut best, mut sample, mut last) = (-1.0, 0, u32::MAX);
+        let small = q.to_array().map(|c| c as f32);
+        let (mut best, mut sample) = (-1.0, 0);
         for node in self.lattice.corners(q) {
-            let Some(&index) = self.near.get(node) else { continue };
-            if index == last {
-                continue;
-            }
-            last = index;
-            let Some(p) = self.samples.get(index as usize) else { continue };
-            let dot = q.dot(*p).abs();
+            let index = self.near.get(node).copied().unwrap_or(u32::MAX) as usize;
+            let Some(p) = self.small.get(index) else { continue };
+            let dot = boundary::dot(p, &small);
             if dot > best {
-                (best, sample) = (dot, index as usize);
+                (best, sample) = (dot, index);
             }
         }
         let angle = self.samples.get(sample).map_or(PI, |p| q.angle_to(*p));
@@ -305,6 +331,10 @@ impl Field {
     }
 
     fn projected(&self, q: Quat, inward: Quat, distance: f64) -> Quat {
+        self.projected_on(self.valid(), q, inward, distance)
+    }
+
+    fn projected_on(&self, spline: &[f32], q: Quat, inward: Quat, distance: f64) -> Quat {
         let same = |q: Quat| {
             let q = q.normalized();
             if (self.chart.outward(inward)).dot(q) < 0.0 { -q } else { q }
@@ -312,16 +342,20 @@ impl Field {
         if distance >= 0.0 || distance.is_nan() {
             return same(q);
         }
-        let spline = self.valid();
+        let starts = self.boundary.starts(&self.lattice, inward);
         let inside = |p: &Quat| self.lattice.value(spline, *p) >= 0.0;
         let anchor = || {
             let sample = self.known(inward).sample;
             let near = self.samples.get(sample).copied().filter(inside);
             near.or_else(|| self.samples.iter().copied().find(inside))
         };
-        let Some(mut found) = projection::project(&self.lattice, spline, inward, anchor) else {
+        let found = projection::project(&self.lattice, spline, inward, starts, anchor);
+        let Some((mut found, sure)) = found else {
             return same(q);
         };
+        if sure {
+            return self.chart.outward(found).normalized();
+        }
         // Back and forth between the axes rounds; what then is outside by that is moved in.
         for _ in 0..8 {
             let outward = self.chart.outward(found).normalized();
