@@ -23,6 +23,7 @@ impl<'d> Element<'d> {
     }
 
     /// Its number in document order.
+    #[cfg(feature = "opensim")]
     pub(crate) fn number(self) -> u32 {
         self.index
     }

@@ -165,6 +165,7 @@ impl XmlDocument {
 
     /// This document with what stands inside elements of others put first into some of its own. The
     /// places of what is put in are those of the element that received it.
+    #[cfg(feature = "opensim")]
     pub(crate) fn with_inserted(&self, inserted: &[(Element<'_>, Element<'_>)]) -> Self {
         let mut whole = Self { nodes: Vec::new(), attributes: Vec::new(), heap: String::new() };
         let mut copy = |from: Element<'_>, parent: u32, place: Place| -> u32 {

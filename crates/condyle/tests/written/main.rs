@@ -82,6 +82,17 @@ fn what_is_listed_is_within_what_is_promised_or_named() {
     }
 }
 
+#[test]
+fn only_what_jumps_is_said_not_to_be_said() {
+    for name in shipped::names() {
+        let warnings = opensim::write(&model(name)).warnings;
+        let not_said = warnings.iter().filter(|w| w.code == "plain/not-said").count();
+        // The contacts of both sides.
+        let expected = if NOT_SAID.contains(&("osim", name)) { 2 } else { 0 };
+        assert_eq!(not_said, expected, "{name}: {warnings:?}");
+    }
+}
+
 /// What is written today, read by simple readers, is where the program had it.
 fn written_today(peer: &Peer) {
     for (name, answer) in &answers(peer) {
