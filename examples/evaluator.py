@@ -14,7 +14,7 @@ from math import atan2, copysign, cos, hypot, pi, sin, sqrt
 import numpy as np
 
 MOST, TAU, ONE = 1e9, 2 * pi, np.eye(3)
-LIMITS = ("depend", "cone", "ellipse", "half_space")
+LIMITS = ("depend", "cone", "ellipse", "half_space", "field")
 
 def norm(v): return sqrt(v @ v)
 def unit(v): return v / norm(v)
@@ -505,6 +505,9 @@ class Model:
         return self.read(i["angles"]), p["_cone"].legal
     def ellipse(self, p, i, c): return self.read([i["first"], i["second"]]), lambda asked: ellipse(p, asked)
     def half_space(self, p, i, c): return self.read(i["inputs"]), lambda asked: half_space(p, asked)
+    def field(self, p, i, c):
+        def legal(_): raise NotImplementedError(f"{c['path']}: a learned limit of a coordinate, posed")
+        return [self.read(i["orientation"])], legal
     def relative_orientation(self, p, i, c): return [quaternion_of(self.relative(i)[:3, :3])]
     def relative_position(self, p, i, c):
         at = self.relative(i) @ np.append(p["point"], 1)

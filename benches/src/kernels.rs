@@ -1,6 +1,8 @@
 //! The kernels whose instructions are counted.
 
-use crate::{chain, full_body, walk};
+use crate::{chain, full_body, limits, walk};
+use condyle_learn::limits::Field;
+use condyle_math::Quat;
 use condyle_model::{Jacobian, Mode, Pose, Program};
 use condyle_track::{MarkerTarget, Rules, Scratch, Targets, Tracker};
 use std::hint::black_box;
@@ -16,11 +18,16 @@ pub struct Kernel {
 }
 
 /// All kernels.
-pub const KERNELS: [Kernel; 5] = [
+pub const KERNELS: [Kernel; 10] = [
     Kernel { name: "pose_full_body", repeats: 1280, run: pose_full_body },
     Kernel { name: "jacobian_full_body", repeats: 1280, run: jacobian_full_body },
     Kernel { name: "ball_chain_64", repeats: 1280, run: ball_chain_64 },
     Kernel { name: "track_frame", repeats: 256, run: track_frame },
+    Kernel { name: "limit_state", repeats: 25_600, run: limit_state },
+    Kernel { name: "limit_gradient", repeats: 25_600, run: limit_gradient },
+    Kernel { name: "limit_evidence", repeats: 25_600, run: limit_evidence },
+    Kernel { name: "limit_nearest", repeats: 12_800, run: limit_nearest },
+    Kernel { name: "limit_learn", repeats: 2, run: limit_learn },
     Kernel { name: "spline", repeats: 25_600, run: spline },
 ];
 
@@ -72,6 +79,63 @@ fn track_frame(repeats: usize) {
         let answer =
             tracker.solve_frame(&mut scratch, &recorded[frame + 1], frame + 1, &motion[frame]);
         assert!(black_box(answer).status.is_solved());
+    }
+}
+
+/// Frames of a motion that goes in and out of a limit; fewer nodes than usual, for a shorter start.
+fn ask(repeats: usize, keep: impl Fn(&Field, Quat) -> bool, ask: impl Fn(&Field, Quat)) {
+    let field = limits::field(&limits::cloud(400), 32);
+    let motion = limits::motion(640).into_iter().filter(|q| keep(&field, *q));
+    for q in motion.collect::<Vec<_>>().iter().cycle().take(repeats) {
+        ask(&field, black_box(*q));
+    }
+}
+
+fn limit_state(repeats: usize) {
+    ask(
+        repeats,
+        |_, _| true,
+        |field, q| {
+            black_box(field.state(q));
+        },
+    );
+}
+
+fn limit_gradient(repeats: usize) {
+    ask(
+        repeats,
+        |_, _| true,
+        |field, q| {
+            black_box(field.distance_and_gradient(q));
+        },
+    );
+}
+
+fn limit_evidence(repeats: usize) {
+    ask(
+        repeats,
+        |_, _| true,
+        |field, q| {
+            black_box(field.state_with_evidence(q));
+        },
+    );
+}
+
+/// What is outside by up to 11 degrees.
+fn limit_nearest(repeats: usize) {
+    ask(
+        repeats,
+        |field, q| (-0.2..0.0).contains(&field.distance(q)),
+        |field, q| {
+            black_box(field.nearest(q));
+        },
+    );
+}
+
+fn limit_learn(repeats: usize) {
+    let cloud = limits::cloud(400);
+    for _ in 0..repeats {
+        black_box(limits::field(black_box(&cloud), 32));
     }
 }
 

@@ -11,6 +11,7 @@ pub mod clock;
 pub mod full_body;
 pub mod joints;
 pub mod kernels;
+pub mod limits;
 pub mod random;
 pub mod shoulder;
 pub mod table;

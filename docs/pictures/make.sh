@@ -20,3 +20,16 @@ here=$(dirname "$0")
 "$condyle" render shoulder --view back --at scapula_r --zoom 1.2 --show bones,contacts --size 700x480 -o "$here/contact.png"
 "$condyle" render spine-shao2003 --view side --view front --size 700x420 -o "$here/spine-shao2003.png"
 "$condyle" render shoulder-shao2003 --view 20,10 --show bones,limits,contacts --size 700x420 -o "$here/shoulder-shao2003.png"
+
+# Motions in the manner of Figures 13 and 14 of Herda et al. 2003: an arm through the thorax, an arm too far back.
+work=$(mktemp -d)
+for motion in through-thorax:front too-far-back:side; do
+    name=${motion%:*}
+    view=${motion#*:}
+    "$condyle" convert "$here/$name.json" "$work/$name.mot" --model human --rate 60
+    "$condyle" constrain human "$work/$name.mot" -o "$work/$name-legal.mot"
+    for which in "" -legal; do
+        "$condyle" render human "$work/$name$which.mot" --sheet 6 --limits off --view "$view" --at humerus_r,thorax,hand_r --zoom 1.6 --size 1200x280 -o "$here/$name$which.png"
+    done
+done
+rm -r "$work"

@@ -1,8 +1,8 @@
 //! Any text as a document: no panic; a kind that does not contradict the reader; as a model, errors
-//! that can be shown, and the same model after writing and reading again.
+//! that can be shown, and the same model after writing and reading again; as a limit likewise.
 #![no_main]
 
-use condyle_formats::document::{Kind, kind, read_with, render, write};
+use condyle_formats::document::{Kind, kind, limit, read_with, render, write};
 use condyle_math::{Affine, Mat3, Scalar, Vec3};
 use condyle_model::component::{MotionLaw, Registry};
 use condyle_model::{Mode, Pose, Program};
@@ -28,6 +28,22 @@ fuzz_target!(|data: &[u8]| {
     });
     let found = kind(data);
     let text = String::from_utf8_lossy(data);
+    if found == Some(Kind::Limit) {
+        match limit::read(&text, &mut |_| Err("nothing there".to_owned())) {
+            Ok(read) => {
+                // The field is not made: that takes a second.
+                let limit = read.value;
+                assert!(limit.ground().samples.iter().all(|q| (q.dot(*q) - 1.0).abs() < 1e-9));
+                if limit.ground().known.is_none() {
+                    return;
+                }
+                let again = limit::read(&limit::write(&limit), &mut |_| Err(String::new()));
+                assert_eq!(again.expect("it was written").value.ground(), limit.ground());
+            }
+            Err(errors) => assert!(!errors.is_empty()),
+        }
+        return;
+    }
     // The text includes itself under other names, at most three times.
     let mut left = 3;
     let mut include = |name: &str| {

@@ -22,5 +22,6 @@ fuzz_target!(|data: &[u8]| {
     let tracks = found.expect("it was read before");
     let Ok(file) = glb::reanimate(data, &tracks, Old::Replaced) else { return };
     let again = glb::read(&file.value, &options, &mut beside).expect("what was written is read");
-    assert_eq!(again.value.model.segments().len(), model.segments().len());
+    // A node that stands still is not animated any more, and may be none of the figure's then.
+    assert!(again.value.model.segments().len() <= model.segments().len());
 });

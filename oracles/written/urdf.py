@@ -1,9 +1,11 @@
-"""Loads a .urdf in Pinocchio and compares its links with what a model says.
+"""Loads a written .urdf in Pinocchio and compares its links with the model that was written.
 
-    python urdf.py FILE.urdf [ANSWER.json]     (FILE.urdf.json by default, from the example `written`)
+    python urdf.py FILE.urdf [KEEP]     (FILE.urdf.json beside it, from the example `written` of the facade)
 
-All joint values are given. Prints one line of JSON: the largest difference in mm and degrees from what the file says
-(`said`) and from the model (`true`), and of mimics from the values that were written (`mimic`).
+Once with mimics, where Pinocchio computes the joints that mimic others, and those that cannot mimic any are set from the
+model (`follows`); once with all joints set (`all_given`). Pinocchio 4.1 refuses a mimic of a joint that comes after it in the
+tree, though URDF allows it: there the script multiplies (`mimics`). Prints one line of JSON: the largest differences in mm,
+degrees and percent of stretch, links beyond 0.5 mm or 0.1 degrees, and the links at the first KEEP poses (none).
 """
 
 import json
@@ -13,63 +15,54 @@ import xml.etree.ElementTree as tree
 import numpy as np
 import pinocchio as pin
 
-
-def difference(a, b):
-    turn = a[:, :3].T @ b[:, :3]
-    angle = np.degrees(2 * np.arcsin(min(1.0, np.linalg.norm(turn - np.eye(3)) / np.sqrt(8))))
-    return 1e3 * np.linalg.norm(a[:, 3] - b[:, 3]), angle
+import common
 
 
-def main(path, answer):
-    with open(answer) as file:
-        answer = json.load(file)
-    model = pin.buildModelFromUrdf(path)
-    data = model.createData()
-    robot = tree.parse(path).getroot()
-    mimics = []
-    for joint in robot.iter("joint"):
-        for mimic in joint.iter("mimic"):
-            factor, offset = float(mimic.get("multiplier", 1)), float(mimic.get("offset", 0))
-            mimics.append((joint.get("name"), mimic.get("joint"), factor, offset))
-    base = np.vstack([np.reshape(answer["base"], (3, 4)), [0, 0, 0, 1]])
-    worst = {"said": [0.0, 0.0], "true": [0.0, 0.0]}
-    coupled = 0.0
-    used = set()
-    for pose in answer["poses"]:
-        joints = {**pose["joints"]}
+def main(path, keep):
+    answer = common.read(path)
+    models = {False: pin.buildModelFromUrdf(path, mimic=False)}
+    couplings = []
+    try:
+        models[True] = pin.buildModelFromUrdf(path, mimic=True)
+    except ValueError as error:
+        assert "not in the kinematic tree" in str(error), error
+        models[True] = models[False]
+        for joint in tree.parse(path).getroot().iter("joint"):
+            for mimic in joint.iter("mimic"):
+                factor, offset = float(mimic.get("multiplier", 1)), float(mimic.get("offset", 0))
+                couplings.append((joint.get("name"), [mimic.get("joint")], lambda x, f=factor, o=offset: f * x[0] + o))
+    datas = {only: model.createData() for only, model in models.items()}
+    joints = answer["poses"][0]["joints"]
+    all_names = set(list(models[False].names)[1:])
+    assert all_names == set(joints), all_names ^ set(joints)
+    coupled = {name for name, *_ in couplings} | {name for name in all_names if models[True].joints[models[True].getJointId(name)].nq == 0
+               or "mimic" in models[True].joints[models[True].getJointId(name)].shortname().lower()}
+    given = [name for name in joints if name not in coupled]
+
+    def place(pose, only):
+        model, data = models[only], datas[only]
         q = pin.neutral(model)
-        for name in model.names[1:]:
+        values = pose["joints"]
+        if only:
+            values = common.chain(couplings, {n: values[n] for n in given})
+        for name, value in values.items():
             joint = model.joints[model.getJointId(name)]
             at = joint.idx_q
-            if joint.nq == 7:
-                place = [joints.pop(f"{name}_{axis}", 0.0) for axis in "xyz"]
-                turn = pose["balls"].get(name)
-                if turn is None:
-                    from scipy.spatial.transform import Rotation
-                    angles = [joints.pop(f"{name}_rotation_{axis}") for axis in "xyz"]
-                    turn = Rotation.from_euler("XYZ", angles).as_quat()
-                q[at:at + 7] = [*place, *turn]
-                continue
-            value = joints.pop(name)
             if joint.nq == 2:
                 q[at:at + 2] = np.cos(value), np.sin(value)
             else:
                 q[at] = value
-        for name, leader, factor, offset in mimics:
-            given = pose["joints"]
-            coupled = max(coupled, abs(factor * given[leader] + offset - given[name]))
         pin.framesForwardKinematics(model, data, q)
-        for name in pose["said"]:
-            if not model.existFrame(name, pin.FrameType.BODY):
-                raise SystemExit(f"no link {name}")
-            found = data.oMf[model.getFrameId(name, pin.FrameType.BODY)].homogeneous[:3]
-            for kind in worst:
-                wanted = base @ np.vstack([np.reshape(pose[kind][name], (3, 4)), [0, 0, 0, 1]])
-                mm, degrees = difference(wanted[:3], found)
-                worst[kind] = [max(worst[kind][0], mm), max(worst[kind][1], degrees)]
-        used.update(joints)
-    print(json.dumps({**worst, "mimic": coupled, "poses": len(answer["poses"]), "mimics": len(mimics), "links": len(answer["poses"][0]["said"]), "unused": sorted(used)[:5]}))
+        found = {}
+        for name in pose["true"]:
+            assert model.existFrame(name, pin.FrameType.BODY), f"no link {name}"
+            found[name] = data.oMf[model.getFrameId(name, pin.FrameType.BODY)].homogeneous[:3]
+        return found
+
+    result = common.run(f"Pinocchio {pin.__version__}", answer, given, place, keep)
+    result.update(couplings=len(coupled), mimics="script" if couplings else "Pinocchio")
+    print(json.dumps(result))
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else sys.argv[1] + ".json")
+    main(sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 0)

@@ -1,9 +1,10 @@
-"""Opens a written .usda with usd-core, validates it and compares its joints with what a model says.
+"""Opens a written .usda with usd-core, validates it and compares its joints with the model that was written.
 
-    python usd.py FILE.usda      (FILE.usda.json beside it, from the example `written`)
+    python usd.py FILE.usda [KEEP]      (FILE.usda.json beside it, from the example `written` of the facade)
 
-Prints one line of JSON: the largest difference in mm and degrees over all frames (`true`), that of the rest pose from
-the bind transforms (`rest`), and what the validators find (`errors`).
+Prints one line of JSON: the largest differences over all frames in mm, degrees and percent of stretch (`follows`), that
+of the rest pose from the bind transforms (`rest`), what the validators find (`errors`), and the joints at the first KEEP
+frames (none).
 """
 
 import json
@@ -12,25 +13,20 @@ import sys
 import numpy as np
 from pxr import Usd, UsdGeom, UsdSkel
 
+import common
+
 try:
     from pxr import UsdValidation
 except ImportError:
     UsdValidation = None
 
 
-def difference(a, b):
-    turn = a[:, :3].T @ b[:, :3]
-    angle = np.degrees(2 * np.arcsin(min(1.0, np.linalg.norm(turn - np.eye(3)) / np.sqrt(8))))
-    return 1e3 * np.linalg.norm(a[:, 3] - b[:, 3]), angle
-
-
 def rows(matrix):
     return np.array(matrix).T[:3]
 
 
-def main(path):
-    with open(path + ".json") as file:
-        answer = json.load(file)
+def main(path, keep):
+    answer = common.read(path)
     stage = Usd.Stage.Open(path)
     errors = []
     if UsdValidation is not None:
@@ -44,17 +40,21 @@ def main(path):
     skeleton = next(UsdSkel.Skeleton(p) for p in stage.Traverse() if p.IsA(UsdSkel.Skeleton))
     query = cache.GetSkelQuery(skeleton)
     names = [str(j).split("/")[-1] for j in query.GetJointOrder()]
-    bind = [rows(m) for m in query.GetJointWorldBindTransforms()]
-    rest = [rows(m) for m in query.ComputeJointSkelTransforms(0, True)]
-    at_rest = np.max([difference(a, b) for a, b in zip(bind, rest)], axis=0).tolist()
-    worst = [0.0, 0.0]
-    for frame, pose in enumerate(answer["poses"]):
-        found = [rows(m) for m in query.ComputeJointSkelTransforms(frame)]
-        for name, transform in zip(names, found):
-            mm, degrees = difference(np.reshape(pose["true"][name], (3, 4)), transform)
-            worst = [max(worst[0], mm), max(worst[1], degrees)]
-    print(json.dumps({"true": worst, "rest": at_rest, "errors": errors, "up": UsdGeom.GetStageUpAxis(stage), "joints": len(names), "poses": len(answer["poses"])}))
+    rest = common.Largest()
+    for name, bind, at_rest in zip(names, query.GetJointWorldBindTransforms(), query.ComputeJointSkelTransforms(0, True)):
+        rest.add(name, rows(bind), rows(at_rest))
+    frames = {id(pose): frame for frame, pose in enumerate(answer["poses"])}
+
+    def place(pose, _):
+        return dict(zip(names, map(rows, query.ComputeJointSkelTransforms(frames[id(pose)]))))
+
+    for pose in answer["poses"]:
+        pose["joints"] = {}
+    answer["base"] = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]
+    result = common.run("usd-core " + ".".join(map(str, Usd.GetVersion()[1:])), answer, [], place, keep)
+    result.update(rest=rest.rounded(), errors=errors, up=UsdGeom.GetStageUpAxis(stage), couplings=0)
+    print(json.dumps(result))
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 0)

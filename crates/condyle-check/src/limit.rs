@@ -29,6 +29,10 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
             findings.extend(complement(subject, component, &cone.cone));
         }
     }
+    for bound in subject.program.bounds() {
+        let component = &subject.model.components()[bound.component.index()];
+        findings.extend(outside_at_rest(subject, component, subject.rest.bounded(bound).collect()));
+    }
     for id in subject.model.unused_components() {
         findings.push(unused(subject, id));
     }
@@ -50,6 +54,37 @@ pub(super) fn check(subject: &Inspected<'_>, findings: &mut Vec<Diagnostic>) {
             ));
         }
     }
+}
+
+/// A learned limit that the default posture breaks: mostly the axes of its frames are others than those of
+/// the segments.
+fn outside_at_rest(
+    subject: &Inspected<'_>,
+    component: &Component,
+    numbers: Vec<f64>,
+) -> Option<Diagnostic> {
+    let Law::Field(law) = &component.law else { return None };
+    let by = law.beyond(&numbers);
+    if by <= NEAR {
+        return None;
+    }
+    let about = law.limit.about();
+    Some(finding(
+        Severity::Warning,
+        "lint/outside-at-rest",
+        [subject.model.component_subject(component)],
+        format!(
+            "field `{}` does not allow the default posture, by {}",
+            component.name,
+            amount(CoordinateKind::Rotation, by)
+        ),
+        format!(
+            "its samples are rotations of `{}` in `{}`: give the axes of these in the model's segments as \
+             `in_segment` and `in_reference`",
+            about.child,
+            about.reference.as_deref().unwrap_or("the laboratory")
+        ),
+    ))
 }
 
 /// Directions at which a cone is sampled.

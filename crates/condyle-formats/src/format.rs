@@ -10,6 +10,8 @@ use crate::glb;
 #[cfg(feature = "opensim")]
 use crate::opensim::{self, setup};
 use crate::skeleton::Assumed;
+#[cfg(feature = "smpl")]
+use crate::smpl;
 #[cfg(feature = "document")]
 use crate::text::utf8;
 #[cfg(feature = "urdf")]
@@ -21,7 +23,7 @@ use crate::{
     poses::{self, Poses},
 };
 #[cfg(feature = "document")]
-use condyle_learn::frames::Recipe;
+use condyle_learn::{frames::Recipe, limits::LearnedLimit};
 use condyle_model::Model;
 
 /// What a file may hold.
@@ -43,6 +45,8 @@ pub enum ContentKind {
     Goals,
     /// Which markers give the orientation of a segment.
     Recipe,
+    /// Which rotations of a segment in another are possible.
+    Limit,
     /// A scene for viewers.
     Scene,
 }
@@ -60,6 +64,7 @@ impl ContentKind {
             Self::Names => "a table of names",
             Self::Goals => "goals of a pose",
             Self::Recipe => "a recipe",
+            Self::Limit => "a learned limit",
             Self::Scene => "a scene",
         }
     }
@@ -97,6 +102,9 @@ pub enum Content {
     /// Which markers give the orientation of a segment.
     #[cfg(feature = "document")]
     Recipe(Recipe),
+    /// Which rotations of a segment in another are possible.
+    #[cfg(feature = "document")]
+    Limit(Box<LearnedLimit>),
     /// A setup of inverse kinematics.
     #[cfg(feature = "opensim")]
     Setup(setup::IkSetup),
@@ -134,6 +142,8 @@ impl Content {
             Self::Goals(_) => ContentKind::Goals,
             #[cfg(feature = "document")]
             Self::Recipe(_) => ContentKind::Recipe,
+            #[cfg(feature = "document")]
+            Self::Limit(_) => ContentKind::Limit,
             #[cfg(feature = "opensim")]
             Self::Setup(_) | Self::Tasks(_) => ContentKind::Setup,
         }
@@ -182,6 +192,8 @@ pub enum Id {
     Asf,
     /// Takes of Acclaim's skeletons.
     Amc,
+    /// Poses and bodies of SMPL.
+    Smpl,
 }
 
 /// The text of another file by its path as seen from the one that is read; else a sentence.
@@ -221,8 +233,9 @@ pub const FORMATS: &[Format] = &[
             ContentKind::Names,
             ContentKind::Goals,
             ContentKind::Recipe,
+            ContentKind::Limit,
         ],
-        writes: &[ContentKind::Model],
+        writes: &[ContentKind::Model, ContentKind::Limit],
         sniff: |bytes| document::kind(bytes).is_some(),
         read: |bytes, include| {
             let text = utf8(bytes)?;
@@ -231,6 +244,8 @@ pub const FORMATS: &[Format] = &[
                 Some(Kind::Names) => document::names::read(text, include)?.map(Content::Names),
                 Some(Kind::Goals) => document::goals::read(text, include)?.map(Content::Goals),
                 Some(Kind::Recipe) => document::recipe::read(text, include)?.map(Content::Recipe),
+                Some(Kind::Limit) => document::limit::read(text, include)?
+                    .map(|limit| Content::Limit(Box::new(limit))),
                 // Those that are no document at all get the message of a model.
                 _ => document::read(text, include)?.map(Content::Document),
             })
@@ -436,6 +451,26 @@ pub const FORMATS: &[Format] = &[
         read: |_, _| {
             let message = "a take means nothing without its skeleton, an .asf file";
             Err(Error::new("amc/skeleton", message).with_help("read it with its skeleton"))
+        },
+    },
+    #[cfg(feature = "smpl")]
+    Format {
+        id: Id::Smpl,
+        name: "npz",
+        title: "poses of SMPL, SMPL-H and SMPL-X, and their bodies",
+        endings: &["npz"],
+        reads: &[ContentKind::Motion, ContentKind::Model],
+        writes: &[],
+        sniff: smpl::is_npz,
+        read: |bytes, _| {
+            if smpl::is_body(bytes) {
+                let Read { value: rest, warnings } = smpl::rest(bytes)?;
+                let mut read = rest.model()?;
+                read.warnings.extend(warnings);
+                return Ok(read.map(Content::Model));
+            }
+            let message = "poses of SMPL mean nothing without the places of joints, a body";
+            Err(Error::new("smpl/rest", message).with_help("read them with a body"))
         },
     },
     Format {

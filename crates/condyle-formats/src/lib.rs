@@ -5,7 +5,7 @@
 //! right. Inside, lengths are metres; a recording in millimetres is converted at the border. No
 //! input makes a reader panic, recurse, or allocate more than a small multiple of its size.
 //!
-//! Tables (TRC, STO, MOT, CSV) and C3D are always there; `document`, `glb`, `opensim` and `poses` are features, and
+//! Tables (TRC, STO, MOT, CSV) and C3D are always there; `document`, `glb`, `opensim` and `poses` are features, as is `smpl`, and
 //! `fbx`, which is off by default: it needs a C compiler.
 //!
 //! | format | read | write |
@@ -23,6 +23,7 @@
 //! | SKEL skeletons of CSE 169 | [`skel::read`] | |
 //! | ASF skeletons, and AMC takes of them | [`asf::read`], [`asf::with_skeleton`] | takes: [`asf::write`] |
 //! | BVH skeletons with motion | [`bvh::from_bytes`] | [`bvh::write`] |
+//! | SMPL, SMPL-H and SMPL-X poses, and their bodies (NPZ) | `smpl::from_bytes`, `smpl::rest` | |
 //! | FBX skeletons with motion | `fbx::read` | |
 //! | GLB and glTF skeletons with motion; animated scenes | [`glb::read`] | [`glb::write`] |
 //! | GLB characters of a user, given back with a new animation | | [`glb::reanimate`] |
@@ -56,6 +57,8 @@ pub mod plain;
 pub mod poses;
 pub mod skel;
 pub mod skeleton;
+#[cfg(feature = "smpl")]
+pub mod smpl;
 pub mod sto;
 pub mod text;
 pub mod trc;

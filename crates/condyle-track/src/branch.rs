@@ -7,8 +7,8 @@
 
 use crate::target::Targets;
 use condyle_model::evaluate::ClosureRows;
-use condyle_model::{CoordinateKind, Mode, Model, Pose, Program};
-use std::f64::consts::{PI, TAU};
+use condyle_model::{CoordinateId, CoordinateKind, Mode, Model, Pose, Program, SegmentId};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A range that spans this much, 359°, has no ends where whole turns are the same posture.
 const CIRCLE: f64 = 359.0 * PI / 180.0;
@@ -21,6 +21,9 @@ const TRIES: usize = 6;
 
 /// Two numbers for one posture may differ by rounding.
 const SAME: f64 = 1e-9;
+
+/// How far a limb is raised from a pole to see where it could go, in radians.
+const RAISED: f64 = 0.05;
 
 /// Three rotations of a joint that name each posture twice.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +42,9 @@ pub(crate) struct Branches {
     /// Where those are stored of which the two ends are near each other.
     wide: Vec<usize>,
     twins: Vec<Twin>,
+    /// Pairs of rotations of which the first tells nothing where the second is at its lower bound: a direction, and how
+    /// far something is raised in it.
+    poles: Vec<[usize; 2]>,
 }
 
 /// Where a coordinate of one number is stored, and its bounds.
@@ -92,6 +98,15 @@ impl Branches {
             };
             branches.twins.extend(found.into_iter().find(|twin| holds(twin, &mut same)));
         }
+        for [(around, set, _), (raised, other, _)] in pairs(&triple) {
+            let bound = stored.iter().flatten().find(|(place, ..)| *place == raised);
+            if let (true, Some(&(_, lower, _))) = (set == other, bound)
+                && lower.is_finite()
+                && same.is_pole(around, raised, lower)
+            {
+                branches.poles.push([around, raised]);
+            }
+        }
         branches
     }
 
@@ -123,6 +138,56 @@ impl Branches {
             }
         }
         changed
+    }
+
+    /// Names postures by angles that are in the model's ranges, where those at hand are not and the other three of the
+    /// joint are; whether any were changed. Ranges count whether limits hold or not.
+    pub(crate) fn bring_inside(&self, stored: &mut [f64], model: &Model) -> bool {
+        let range = |place: usize| {
+            let own = |id: &CoordinateId| model.stored_range(*id).start == place;
+            let id = model.coordinate_ids().find(own)?;
+            Some(model.coordinate(id).range.bounds())
+        };
+        let inside = |values: &[(usize, f64)]| {
+            values.iter().all(|&(place, q)| range(place).is_none_or(|(l, u)| (l..=u).contains(&q)))
+        };
+        let mut changed = false;
+        for twin in &self.twins {
+            if inside(&twin.places.map(|place| (place, stored[place]))) {
+                continue;
+            }
+            let other = twin.of(stored).map(|(place, q)| {
+                let turned = [0.0, -TAU, TAU].map(|turn| (place, q + turn));
+                turned.into_iter().find(|value| inside(&[*value])).unwrap_or((place, q))
+            });
+            if inside(&other) {
+                other.iter().for_each(|&(place, q)| stored[place] = q);
+                changed = true;
+            }
+        }
+        changed
+    }
+
+    /// Where else a limb could go that is not raised at all: a little in each other quarter of the directions in which it
+    /// could be. There the direction has no gradient, so that no descent leads away from the bound.
+    pub(crate) fn off_poles<'a>(
+        &'a self,
+        stored: &'a [f64],
+        bounds: &'a [Option<Bounded>],
+    ) -> impl Iterator<Item = [(usize, f64); 2]> + 'a {
+        let bound = move |place: usize| bounds.iter().flatten().find(move |(p, ..)| *p == place);
+        let low = move |&&[_, raised]: &&[usize; 2]| {
+            bound(raised).is_some_and(|&(_, lower, _)| stored[raised] <= lower)
+        };
+        let quarters = [FRAC_PI_2, PI, -FRAC_PI_2];
+        self.poles.iter().filter(low).flat_map(move |&[around, raised]| {
+            quarters.into_iter().filter_map(move |quarter| {
+                let inside = |q: &f64| bound(around).is_none_or(|&(_, l, u)| (l..=u).contains(q));
+                let turned = [0.0, -TAU, TAU].map(|turn| stored[around] + quarter + turn);
+                let q = turned.into_iter().find(inside)?;
+                Some([(around, q), (raised, stored[raised] + RAISED)])
+            })
+        })
     }
 
     /// Where else a joint could be that is at a bound: at its other three angles, or at the other end of an
@@ -168,6 +233,14 @@ impl Twin {
         let [a, b, c] = self.places;
         [(a, stored[a] + PI), (b, self.sum - stored[b]), (c, stored[c] + PI)]
     }
+}
+
+/// All pairs of different ones that are at most two apart, in both orders.
+fn pairs<T: Copy>(all: &[T]) -> impl Iterator<Item = [T; 2]> + '_ {
+    (1..=2).flat_map(move |apart| {
+        let both = all.iter().zip(all.iter().skip(apart));
+        both.flat_map(|(a, b)| [[*a, *b], [*b, *a]])
+    })
 }
 
 fn legal(values: &[(usize, f64)], bounds: &[Option<Bounded>]) -> bool {
@@ -222,6 +295,50 @@ impl<'a> Comparison<'a> {
             changes.iter().for_each(|&(place, q)| other[place] = q);
             self.same(&at, &other, &changes)
         })
+    }
+
+    /// Whether a rotation turns a segment that should have an orientation, but not where another one is at its bound,
+    /// whatever all others are.
+    fn is_pole(&mut self, around: usize, raised: usize, lower: f64) -> bool {
+        let segments: Vec<SegmentId> =
+            self.targets.orientations.iter().map(|t| t.segment).collect();
+        let mut still = vec![true; segments.len()];
+        for _ in 0..TRIES {
+            let mut at = self.model.defaults();
+            for id in self.model.coordinate_ids() {
+                if self.model.coordinate(id).kind == CoordinateKind::Rotation {
+                    at[self.model.stored_range(id).start] += 0.5 * (2.0 * self.random() - 1.0);
+                }
+            }
+            let turn = 1.0 + self.random();
+            let mut turned = |height: f64| -> Option<Vec<f64>> {
+                let mut other = at.clone();
+                (at[raised], other[raised]) = (height, height);
+                other[around] += turn;
+                for (stored, pose) in [&at, &other].into_iter().zip(&mut self.poses) {
+                    self.program.evaluate(stored, Mode::Open, pose).ok()?;
+                }
+                let [p, q] = &self.poses;
+                let off = segments.iter().map(|&segment| {
+                    let [p, q] = [p, q].map(|pose| pose.segment(segment).linear);
+                    [p.x - q.x, p.y - q.y, p.z - q.z]
+                        .iter()
+                        .map(|off| off.norm())
+                        .fold(0.0, f64::max)
+                });
+                Some(off.collect())
+            };
+            let (Some(low), Some(high)) = (turned(lower), turned(lower + 0.7)) else {
+                return false;
+            };
+            for (still, (low, high)) in still.iter_mut().zip(low.iter().zip(&high)) {
+                *still &= *low <= SAME && *high > 0.05;
+            }
+            if !still.contains(&true) {
+                return false;
+            }
+        }
+        true
     }
 
     fn same(&mut self, a: &[f64], b: &[f64], changes: &[(usize, f64)]) -> bool {

@@ -210,6 +210,13 @@ impl Tracker {
         before != stored
     }
 
+    /// Brings every angle within half a turn of its default, and where three angles name a posture outside of their ranges
+    /// takes the other three that do; whether anything was changed.
+    pub(crate) fn rename(&self, stored: &mut [f64]) -> bool {
+        let unwound = self.unwind(stored);
+        self.branches.bring_inside(stored, &self.model) || unwound
+    }
+
     /// Solves a frame that follows another from the posture of that, which `answer` has before and
     /// that of the frame afterwards.
     ///
@@ -241,18 +248,20 @@ impl Tracker {
     }
 
     /// Where a joint is at a bound, tries where else it could be.
-    fn cross_bounds(
+    pub(crate) fn cross_bounds(
         &self,
         scratch: &mut Scratch,
         seen: &[Option<[f64; 3]>],
         frame: usize,
         answer: &mut FrameAnswer,
     ) {
-        if self.branches.across_bounds(&answer.coordinates, &self.stored).next().is_none() {
+        let across = self.branches.across_bounds(&answer.coordinates, &self.stored).map(Vec::from);
+        let poles = self.branches.off_poles(&answer.coordinates, &self.stored).map(Vec::from);
+        let mut others = across.chain(poles).peekable();
+        if others.peek().is_none() {
             return;
         }
-        let stored = answer.coordinates.clone();
-        for other in self.branches.across_bounds(&stored, &self.stored) {
+        for other in others.collect::<Vec<_>>() {
             let mut start = answer.coordinates.clone();
             other.iter().for_each(|&(place, q)| start[place] = q);
             let again = self.solve_frame(scratch, seen, frame, &start);

@@ -27,6 +27,7 @@
 //! | [`Stream`] | frames as they come |
 //! | [`sequence`] | many frames: cut, solve a chunk, stitch |
 //! | [`goal`] | poses by goals: what should be where, nearest to rest |
+//! | [`constrain`] | the nearest legal motion: limits kept in every frame, without sudden changes |
 //! | [`robust`] | faulty markers: left out, exchanged labels put right |
 //! | [`retarget`] | a motion of one figure for another: directions of limbs, feet that stand |
 //!
@@ -53,6 +54,7 @@
 mod answer;
 mod answers;
 mod branch;
+pub mod constrain;
 mod frame;
 pub mod goal;
 mod guess;

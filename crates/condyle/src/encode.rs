@@ -6,6 +6,8 @@ use condyle_diagnostics::{Diagnostic, Error, Read};
 #[cfg(feature = "glb")]
 use condyle_formats::glb;
 use condyle_formats::{ContentKind, Format, Id, bvh, c3d, csv, sto, trc};
+#[cfg(feature = "document")]
+use condyle_learn::limits::LearnedLimit;
 use condyle_model::{Mode, Model};
 use condyle_motion::{AngleUnit, Motion, Recording, Table};
 
@@ -114,6 +116,18 @@ pub fn model(format: &Format, model: &Model) -> Result<Read<Vec<u8>>, Error> {
             let _ = model;
             Err(not_written(format, ContentKind::Model))
         }
+    }
+}
+
+/// A learned limit as a document.
+///
+/// # Errors
+/// `format/not-written` if limits are not written in this format.
+#[cfg(feature = "document")]
+pub fn limit(format: &Format, limit: &LearnedLimit) -> Result<Vec<u8>, Error> {
+    match format.id {
+        Id::Document => Ok(condyle_formats::document::limit::write(limit).into_bytes()),
+        _ => Err(not_written(format, ContentKind::Limit)),
     }
 }
 

@@ -257,6 +257,7 @@
 //! | [`tracking`] | recordings to motions; streams; orientations of inertial sensors |
 //! | [`scaling`] | a model as large as a person |
 //! | [`legal`] | poses within all limits |
+//! | [`limits`] | limits of joints learned from rotations |
 //! | [`picture`], [`render`] | still pictures of models, and of any surfaces and lines |
 //! | [`posing`] | the pose nearest to rest that meets goals |
 //! | [`check`] | findings about a model, or about a motion of it |
@@ -266,9 +267,12 @@
 //! The last two rows are features: without them nothing that reads a file is compiled.
 
 #[cfg(feature = "formats")]
+pub mod constraining;
 pub mod encode;
 mod figure;
 pub mod legal;
+#[cfg(feature = "document")]
+pub mod limits;
 pub mod matching;
 #[cfg(feature = "formats")]
 pub mod open;

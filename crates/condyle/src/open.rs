@@ -1,5 +1,7 @@
 //! Files by path, with errors and warnings that carry the path.
 
+#[cfg(feature = "smpl")]
+mod body;
 mod parts;
 mod source;
 mod take;
@@ -21,6 +23,8 @@ use condyle_formats::poses::{Poses, Resolved};
 use condyle_formats::skeleton::Assumed;
 use condyle_formats::text::utf8;
 use condyle_formats::{Content, ContentKind, FORMATS, Format, Id};
+#[cfg(feature = "document")]
+use condyle_learn::limits::LearnedLimit;
 use condyle_model::Model;
 #[cfg(feature = "poses")]
 use condyle_motion::Keys;
@@ -29,6 +33,8 @@ use source::{bytes, nameless_format};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+#[cfg(feature = "smpl")]
+pub use body::body_is;
 pub use parts::{MotionParts, motion_parts};
 pub use source::{
     animation_is, assumed, files_read, is_standard_input, nameless_is, skeletons_are,
@@ -172,6 +178,17 @@ pub fn content_as(
     zeros: Zeros,
     assumed: &Assumed,
 ) -> Result<Read<Content>, OpenError> {
+    content_within(path, wanted, zeros, assumed, None)
+}
+
+/// As [`content_as`], with the text of what a document may include as [`SKELETON`].
+fn content_within(
+    path: &Path,
+    wanted: Option<ContentKind>,
+    zeros: Zeros,
+    assumed: &Assumed,
+    skeleton: Option<&str>,
+) -> Result<Read<Content>, OpenError> {
     #[cfg(feature = "document")]
     if wanted.is_none_or(|kind| kind == ContentKind::Model)
         && !is_standard_input(path)
@@ -193,8 +210,16 @@ pub fn content_as(
     };
     let found = named.or_else(|| Format::of_bytes(&bytes).filter(fits));
     let format = found.ok_or_else(no_format)?;
-    let mut include = |name: &str| included(path, name);
+    let mut include = |name: &str| match skeleton {
+        Some(text) if name == SKELETON => Ok(text.to_owned()),
+        _ => included(path, name),
+    };
     let read = match format.id {
+        #[cfg(feature = "smpl")]
+        Id::Smpl => {
+            let read = named_after(path, body::opened(path, &bytes, assumed)?);
+            return fitting(path, wanted, read);
+        }
         Id::Amc => return take::take(path, &bytes, assumed).map(|read| named_after(path, read)),
         #[cfg(feature = "glb")]
         Id::Glb | Id::Gltf => scene_of(path, &bytes, assumed),
@@ -224,7 +249,15 @@ pub fn content_as(
     if format.id == Id::Asf {
         skeleton_is(path);
     }
-    let read = named_after(path, read);
+    fitting(path, wanted, named_after(path, read))
+}
+
+/// What was read, if it is what was wanted.
+fn fitting(
+    path: &Path,
+    wanted: Option<ContentKind>,
+    read: Read<Content>,
+) -> Result<Read<Content>, OpenError> {
     match wanted {
         Some(kind) if !read.value.holds(kind) => {
             let message =
@@ -337,6 +370,14 @@ fn included(from: &Path, name: &str) -> Result<String, String> {
     {
         return Ok(text.to_owned());
     }
+    // A skeleton of another format, as the text that says the same.
+    #[cfg(feature = "document")]
+    if Format::of_ending(&ending(&path))
+        .is_some_and(|f| f.id != Id::Document && f.reads.contains(&ContentKind::Model))
+    {
+        let model = model(&path).map_err(|error| error.to_string())?.value;
+        return Ok(condyle_formats::document::write(&model));
+    }
     let bytes = bytes(&path).map_err(|error| match error.cause {
         Cause::Io(error) => {
             #[cfg(feature = "document")]
@@ -376,6 +417,59 @@ pub fn model(path: &Path) -> Result<Read<Model>, OpenError> {
         Content::Animation(animation) => Some(animation.model),
         _ => None,
     })
+}
+
+/// What a document includes to get the skeleton of whatever motion it is used with: such a document puts limits on
+/// the joints of foreign skeletons.
+pub const SKELETON: &str = "skeleton";
+
+/// Whether a file is a document that includes [`SKELETON`].
+#[cfg(feature = "document")]
+pub fn is_binding(path: &Path) -> bool {
+    let document = Format::of_ending(&ending(path)).is_some_and(|f| f.id == Id::Document);
+    let text = if document { bytes(path).ok() } else { None };
+    text.and_then(|text| utf8(&text).ok().map(condyle_formats::document::includes))
+        .is_some_and(|all| all.iter().any(|(_, name)| name == SKELETON))
+}
+
+/// Opens a document that includes [`SKELETON`] with a skeleton.
+///
+/// # Errors
+/// As [`content`].
+#[cfg(feature = "document")]
+pub fn bound(path: &Path, skeleton: &Model) -> Result<Read<Model>, OpenError> {
+    let text = condyle_formats::document::write(skeleton);
+    let wanted = Some(ContentKind::Model);
+    let read = content_within(path, wanted, Zeros::Told, &source::assumed(), Some(text.as_str()))?;
+    let Content::Document(document) = read.value else {
+        return Err(failed(path, Cause::Format { wanted }));
+    };
+    let model = document.model;
+    // A coordinate that the skeleton does not have moves nothing: its joint is misspelled.
+    let set =
+        |model: &Model, id| model.joint_sets()[model.coordinate(id).joint_set.index()].name.clone();
+    let named = |model: &Model, id| format!("{}.{}", set(model, id), model.coordinate(id).name);
+    let known: Vec<String> = skeleton.coordinate_ids().map(|id| named(skeleton, id)).collect();
+    let new = model.coordinate_ids().map(|id| named(&model, id)).find(|own| !known.contains(own));
+    if let Some(own) = new {
+        let message = format!("the skeleton has no coordinate `{own}`");
+        let help = did_you_mean(&own, known.iter().map(String::as_str), || {
+            "`condyle info` lists them".to_owned()
+        });
+        let error = Error::new("binding/coordinate", message).with_help(help);
+        return Err(failed(path, Cause::Content { error, text: None }));
+    }
+    Ok(Read { value: model, warnings: read.warnings })
+}
+
+/// The bytes of a BVH file with another motion of its skeleton, all else to the letter.
+///
+/// # Errors
+/// As [`content`].
+pub fn bvh_with(path: &Path, motion: &Motion) -> Result<Vec<u8>, OpenError> {
+    let bytes = bytes(path)?;
+    let text = condyle_formats::bvh::with_motion(&bytes, &source::assumed(), motion);
+    text.map(String::into_bytes).map_err(|error| failed(path, Cause::Content { error, text: None }))
 }
 
 /// Opens a model as [`model`] does, with the motion that its file holds; without frames if it holds none.
@@ -587,6 +681,18 @@ pub fn settled(
 pub fn goals(path: &Path) -> Result<Read<GoalList>, OpenError> {
     only(path, ContentKind::Goals, Zeros::Told, |content| match content {
         Content::Goals(list) => Some(list),
+        _ => None,
+    })
+}
+
+/// Opens a learned limit.
+///
+/// # Errors
+/// As [`content`].
+#[cfg(feature = "document")]
+pub fn limit(path: &Path) -> Result<Read<LearnedLimit>, OpenError> {
+    only(path, ContentKind::Limit, Zeros::Told, |content| match content {
+        Content::Limit(limit) => Some(*limit),
         _ => None,
     })
 }

@@ -3,8 +3,11 @@
 
 use crate::{amount, finding, length, rounded};
 use condyle_diagnostics::{Diagnostic, Severity};
-use condyle_model::component::{Component, Law, Signal};
+use condyle_math::Quat;
+use condyle_model::component::{Component, FieldLimit, Law, Signal};
 use condyle_model::evaluate::Bound;
+use condyle_model::limit::Limit;
+use condyle_model::limit::field::State;
 use condyle_model::model::ComponentId;
 use condyle_model::{CoordinateKind, Model, Pose, Program};
 
@@ -56,6 +59,8 @@ pub(super) struct Watch<'m> {
     bounds: Vec<Bound>,
     contacts: Vec<ComponentId>,
     pub(super) broken: Vec<Broken>,
+    /// What is in holes of learned limits: possible for all that is known.
+    pub(super) unknown: Vec<Broken>,
 }
 
 impl<'m> Watch<'m> {
@@ -64,7 +69,7 @@ impl<'m> Watch<'m> {
             |id: &ComponentId| matches!(model.components()[id.index()].law, Law::Contact(_));
         let bounds = program.bounds().iter().filter(|bound| !contact(&bound.component));
         let (bounds, contacts) = (bounds.cloned().collect(), program.contacts().collect());
-        Self { model, bounds, contacts, broken: vec![] }
+        Self { model, bounds, contacts, broken: vec![], unknown: vec![] }
     }
 
     /// Looks at a pose that was evaluated with its limits off.
@@ -74,7 +79,13 @@ impl<'m> Watch<'m> {
             let component = &self.model.components()[bound.component.index()];
             let numbers: Vec<f64> = pose.bounded(bound).collect();
             let kind = limited_kind(self.model, component);
-            let Some((by, valid)) = outside(component, &numbers) else { continue };
+            let Some((by, valid)) = outside(component, &numbers) else {
+                if let Some((by, valid)) = unseen(component, &numbers) {
+                    let nearest = || named(self.model, component, &numbers, &valid);
+                    add(&mut self.unknown, bound.component, (frame, time), by, kind, None, nearest);
+                }
+                continue;
+            };
             if by <= ROUNDING[usize::from(kind != CoordinateKind::Rotation)] {
                 continue;
             }
@@ -101,7 +112,8 @@ impl<'m> Watch<'m> {
 
     /// What was found, as findings.
     pub(super) fn say(&self) -> impl Iterator<Item = Diagnostic> + '_ {
-        self.broken.iter().map(|broken| said(self.model, broken))
+        let unknown = self.unknown.iter().map(|unknown| not_seen(self.model, unknown));
+        self.broken.iter().map(|broken| said(self.model, broken)).chain(unknown)
     }
 }
 
@@ -149,9 +161,52 @@ fn outside(component: &Component, numbers: &[f64]) -> Option<(f64, Vec<f64>)> {
     Some((limit.beyond(numbers), valid[..numbers.len().min(valid.len())].to_vec()))
 }
 
+/// Of an orientation in a hole of a learned limit: how far it is from what was seen, and the nearest that was.
+fn unseen(component: &Component, numbers: &[f64]) -> Option<(f64, Vec<f64>)> {
+    let Law::Field(law) = &component.law else { return None };
+    let q = Quat::from(<[f64; 4]>::try_from(numbers).ok()?);
+    if law.state(q) != State::Unknown {
+        return None;
+    }
+    let strict = FieldLimit { strict: true, ..law.clone() };
+    Some((strict.beyond(numbers), strict.legal(numbers)?.to_vec()))
+}
+
+fn not_seen(model: &Model, unknown: &Broken) -> Diagnostic {
+    let component = &model.components()[unknown.component.index()];
+    let near = |near: &Nearest| shown(near.kind, &near.valid);
+    finding(
+        Severity::Note,
+        "motion/unknown",
+        [model.component_subject(component)],
+        format!(
+            "field `{}` knows nothing of {} frames; most in frame {} ({} s), {} from what was seen",
+            component.name,
+            unknown.frames,
+            unknown.frame,
+            rounded(unknown.time, 4),
+            amount(unknown.kind, unknown.by),
+        ),
+        format!(
+            "no violation: nobody was recorded there; the nearest that was is {}",
+            unknown.nearest.iter().map(near).collect::<Vec<_>>().join(", ")
+        ),
+    )
+}
+
+/// Where a learned limit is from, in brackets.
+fn source(component: &Component) -> String {
+    match &component.law {
+        Law::Field(law) if !law.limit.about().source.is_empty() => {
+            format!(" ({})", law.limit.about().source)
+        }
+        _ => String::new(),
+    }
+}
+
 /// Whether what a component limits is an angle or a length.
 fn limited_kind(model: &Model, component: &Component) -> CoordinateKind {
-    if matches!(component.law, Law::Cone(_)) {
+    if matches!(component.law, Law::Cone(_) | Law::Field(_)) {
         return CoordinateKind::Rotation;
     }
     let first = component.inputs.first();
@@ -269,7 +324,8 @@ fn said(model: &Model, broken: &Broken) -> Diagnostic {
         "motion/outside-limit",
         about,
         format!(
-            "{kind} `{name}` is broken in {frames}; {at}, by {}: {}",
+            "{kind} `{name}`{} is broken in {frames}; {at}, by {}: {}",
+            source(component),
             amount(broken.kind, broken.by),
             values.join(", ")
         ),

@@ -129,6 +129,8 @@ pub struct MotionCheck {
     pub disagreements: Vec<Disagreement>,
     /// Limits of several numbers together that are broken, and contacts that leave their surface.
     pub broken: Vec<Broken>,
+    /// Frames of which learned limits know nothing: in their holes, which is no violation.
+    pub unseen: Vec<Broken>,
     /// Loops that are open.
     pub open_loops: Vec<OpenLoop>,
     /// Jumps of rotations.
@@ -243,6 +245,7 @@ pub fn check(model: &Model, table: &Table) -> MotionCheck {
     check.summarise(model);
     check.say(model, table, &motion, watch.say());
     check.broken = watch.broken;
+    check.unseen = watch.unknown;
     check
 }
 

@@ -5,11 +5,13 @@ use crate::failure::{Failure, warn_about};
 use crate::output::{self, columns};
 use clap::Args;
 
-use condyle::check::motion::MotionCheck;
+use condyle::check::motion::{Broken, MotionCheck};
 use condyle::formats::document::Document;
 use condyle::formats::{Content, ContentKind, Format, Id};
 use condyle::open::{Cause, OpenError};
-use condyle::{CoordinateKind, Diagnostic, Model, Read, Severity, Subject, Table, check, open};
+use condyle::{
+    CoordinateKind, Diagnostic, Law, Model, Read, Severity, Subject, Table, check, open,
+};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -243,28 +245,8 @@ fn motion_json(model: &Model, motion: &MotionCheck) -> Value {
             "value": d.value,
             "expected": d.expected,
         })).collect::<Vec<_>>(),
-        "limits": motion.broken.iter().map(|b| {
-            let component = &model.components()[b.component.index()];
-            json!({
-                "limit": component.name,
-                "joint_set": model.joint_sets()[component.joint_set.index()].name,
-                "kind": component.law.kind().name,
-                "frames": b.frames,
-                "runs": b.runs,
-                "frame": b.frame,
-                "time": b.time,
-                "by": b.by,
-                "unit": if b.kind == CoordinateKind::Rotation { "rad" } else { "m" },
-                "gaps": b.gaps,
-                "nearest": b.nearest.iter().map(|near| {
-                    let one = |numbers: &[f64]| match numbers {
-                        [number] => json!(number),
-                        all => json!(all),
-                    };
-                    json!({ "name": near.name, "value": one(&near.value), "nearest": one(&near.valid) })
-                }).collect::<Vec<_>>(),
-            })
-        }).collect::<Vec<_>>(),
+        "limits": motion.broken.iter().map(|b| limit(model, b)).collect::<Vec<_>>(),
+        "unseen": motion.unseen.iter().map(|b| limit(model, b)).collect::<Vec<_>>(),
         "loops": motion.open_loops.iter().map(|o| json!({
             "name": o.name,
             "frames": o.frames,
@@ -343,4 +325,33 @@ fn amount(kind: CoordinateKind, value: f64) -> String {
         CoordinateKind::Translation => format!("{:.2} mm", 1e3 * value),
         CoordinateKind::Scale | CoordinateKind::Other => format!("{value:.4}"),
     }
+}
+
+/// A limit that frames break, or know nothing of.
+fn limit(model: &Model, b: &Broken) -> Value {
+    let component = &model.components()[b.component.index()];
+    let source = match &component.law {
+        Law::Field(law) => Some(&law.limit.about().source),
+        _ => None,
+    };
+    json!({
+        "limit": component.name,
+        "joint_set": model.joint_sets()[component.joint_set.index()].name,
+        "kind": component.law.kind().name,
+        "source": source,
+        "frames": b.frames,
+        "runs": b.runs,
+        "frame": b.frame,
+        "time": b.time,
+        "by": b.by,
+        "unit": if b.kind == CoordinateKind::Rotation { "rad" } else { "m" },
+        "gaps": b.gaps,
+        "nearest": b.nearest.iter().map(|near| {
+            let one = |numbers: &[f64]| match numbers {
+                [number] => json!(number),
+                all => json!(all),
+            };
+            json!({ "name": near.name, "value": one(&near.value), "nearest": one(&near.valid) })
+        }).collect::<Vec<_>>(),
+    })
 }

@@ -26,13 +26,14 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 pub(crate) struct Convert {
     /// A motion (.mot, .sto, .csv), poses (.json, as `fk` takes them), a model (.osim, .toml, a
-    /// resolved one in .json, or the name of a shipped one), a skeleton with its motion (.bvh, .amc, .glb, .gltf, .fbx) or a
+    /// resolved one in .json, or the name of a shipped one), a skeleton with its motion (.bvh, .amc, .glb, .gltf, .fbx, .npz) or a
     /// marker recording (.trc, .c3d).
     input: PathBuf,
     /// Where to write; `-` is standard output and needs --to.
     output: PathBuf,
     /// The model that a motion belongs to: a file, or the name of a shipped one.
     ///
+    /// Of SMPL poses (.npz) it is the body: where their joints are.
     /// With it a motion can be baked to .glb and .bvh: plain bones, each with its translation, rotation and
     /// (in .glb) scale in its parent at every frame, for programs without joint sets.
     #[arg(long, value_name = "M")]
@@ -88,7 +89,7 @@ const WRITTEN: [ContentKind; 4] =
 /// The supported conversions, for the message about any other.
 const KNOWN: &str = "known are: a motion (.mot, .sto, .csv) to .mot, .sto or .csv; with --model also \
                      to .glb, .bvh or .usda (an animation), to .amc where the model is an .asf, .trc or .c3d (the model's markers), and poses (.json) to all \
-                     of these, with --rate as key poses; a skeleton with its motion (.bvh, .amc, .glb, .gltf, .fbx) to all of these \
+                     of these, with --rate as key poses; a skeleton with its motion (.bvh, .amc, .glb, .gltf, .fbx, .npz) to all of these \
                      without --model, and as a model; all of these motions for another figure with --onto; a model (.osim, .urdf, .toml, .json, .asf, or a shipped one by name) to .toml, .json (resolved), .glb, .bvh, .osim, .urdf, .mjcf or .usda; \
                      a recording (.trc, .c3d) to .trc, .c3d or .csv, with --analog its channels to .csv, .mot or .sto";
 
@@ -104,6 +105,9 @@ impl Convert {
         output::check_distinct(&inputs, &[&self.output])?;
         if let Some(model) = &self.model {
             open::skeleton_is(model);
+            if self.is_of_smpl() {
+                open::body_is(model);
+            }
         }
         let read = match open::content(&self.input, None) {
             Err(error) if matches!(error.cause, Cause::Format { .. }) => {
@@ -132,6 +136,7 @@ impl Convert {
             Content::Document(document) if target.id == Id::Document => {
                 self.document(document)?.into_bytes()
             }
+            Content::Limit(limit) if target.id == Id::Document => encode::limit(target, &limit)?,
             Content::Model(model) if target.id == Id::Document => {
                 document::write(&model).into_bytes()
             }
@@ -202,6 +207,11 @@ impl Convert {
     /// The input's name without its ending: the title of what is written.
     fn name(&self) -> String {
         self.input.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    /// Whether the input is a file of poses whose model is their body.
+    fn is_of_smpl(&self) -> bool {
+        Format::of_ending(&open::ending(&self.input)).is_some_and(|f| f.id == Id::Smpl)
     }
 
     fn mode(&self) -> Mode {
@@ -303,7 +313,8 @@ impl Convert {
             Id::Poses => Ok(exchange::write(&model).into_bytes()),
             _ if of_models(target) => Ok(warned(&self.output, encode::model(target, &model)?)),
             _ if !moves(target) => Err(self.unknown(target, "")),
-            _ if self.model.is_some() => {
+            // Their model tells where joints are; the motion is that of their own tree.
+            _ if self.model.is_some() && !self.is_of_smpl() => {
                 self.motion_as(Moving::Table(motion.to_table(&model, &self.name())), target)
             }
             _ => self.moved(&model, motion, target),

@@ -1,5 +1,6 @@
 //! `condyle info`: the contents of a file.
 
+mod limit;
 mod model;
 mod network;
 mod recording;
@@ -20,7 +21,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub(crate) struct Info {
     /// A model (a file, or the name of a shipped one), a marker recording, a motion or another table,
-    /// a setup of tracking, or a table of names.
+    /// a setup of tracking, a table of names, or a learned limit.
     file: PathBuf,
     /// What a marker at exactly 0 0 0 is; without it, it is missing where it is elsewhere in other frames.
     #[arg(long, value_enum)]
@@ -80,6 +81,7 @@ fn to_json(content: &Content) -> Value {
                 |goal: &NamedGoal| json!({ "kind": goal.aim.kind(), "name": goal.name.text });
             json!({ "kind": "goals", "goals": list.goals.iter().map(goal).collect::<Vec<_>>() })
         }
+        Content::Limit(limit) => limit::to_json(limit),
         Content::Recipe(recipe) => json!({
             "kind": "recipe",
             "child": recipe.child.name,
@@ -110,6 +112,7 @@ fn to_text(content: &Content) -> String {
             let goals: String = list.goals.iter().map(goal).collect();
             format!("{} goals of a pose\n{goals}", list.goals.len())
         }
+        Content::Limit(limit) => limit::to_text(limit),
         Content::Recipe(recipe) => {
             let reference = recipe.reference.as_ref().map_or("laboratory", |frame| &frame.name);
             let places = recipe.places().join(", ");

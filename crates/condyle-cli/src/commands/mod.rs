@@ -2,6 +2,7 @@
 
 mod bench;
 mod check;
+mod constrain;
 mod convert;
 mod demo;
 mod diff;
@@ -38,8 +39,9 @@ pub(crate) struct Arguments {
     #[arg(long, global = true, value_name = "N", value_parser = frame_rate)]
     frame_rate: Option<f64>,
     /// The skeleton (.asf) of takes (.amc); without it, the model if that is one, else the .asf of the subject
-    /// beside the take.
-    #[arg(long, global = true, value_name = "F.asf")]
+    /// beside the take. Or the body of SMPL poses (.npz): one of SMPL (.npz), or a model; without it, the
+    /// proportions of `human`.
+    #[arg(long, global = true, value_name = "F")]
     skeleton: Option<PathBuf>,
     /// Which animation is read of a file that holds several (.glb, .gltf, .fbx): its name, or its number
     /// counted from 1. Without it, the first.
@@ -93,6 +95,8 @@ enum Command {
     Track(track::Track),
     /// Scale a model to the person of a static trial.
     Scale(scale::Scale),
+    /// Find the legal motion nearest to a given one, and what limits it broke.
+    Constrain(constrain::Constrain),
     /// Write a file in another format.
     Convert(convert::Convert),
     /// Filter, fill, resample, cut or turn a recording or a motion.
@@ -169,6 +173,9 @@ pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
     }
     if let Some(path) = &arguments.skeleton {
         open::skeleton_is(path);
+        if open::ending(path) != "asf" {
+            open::body_is(path);
+        }
     }
     open::skeletons_are(Assumed {
         metres_per_unit: arguments.length_unit,
@@ -185,6 +192,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
         Command::Render(command) => command.run(),
         Command::Track(command) => command.run(),
         Command::Scale(command) => command.run(),
+        Command::Constrain(command) => command.run(),
         Command::Convert(command) => command.run(),
         Command::Upkeep(command) => command.run(),
         Command::Diff(command) => command.run(),

@@ -1,7 +1,7 @@
 //! `condyle track`: marker recordings in, motion out.
 
-mod done;
-mod places;
+pub(super) mod done;
+pub(super) mod places;
 mod report;
 mod request;
 
@@ -142,7 +142,9 @@ impl Run<'_> {
         let made_from =
             places.report.as_ref().and_then(|_| done::of_trial(&self.made_from, trial, places));
         if self.asked.resume
-            && let Some(report) = made_from.as_deref().and_then(|from| done::found(from, places))
+            && let Some(report) = made_from
+                .as_deref()
+                .and_then(|from| done::found(from, places.report.as_deref(), &places.results()))
         {
             say(&format!("note: {}: done before and unchanged, skipped", trial.display()));
             let failed =
@@ -198,7 +200,7 @@ impl Run<'_> {
 }
 
 /// Writes a result, and answers with its digest.
-fn hashed(
+pub(super) fn hashed(
     place: &Path,
     write: impl FnOnce(&mut Hashed<Output>) -> Result<(), Failure>,
 ) -> Result<String, Failure> {
@@ -208,6 +210,6 @@ fn hashed(
     output.finish().map(|()| digest)
 }
 
-fn pretty(value: &Value) -> String {
+pub(super) fn pretty(value: &Value) -> String {
     format!("{}\n", serde_json::to_string_pretty(value).unwrap_or_default())
 }

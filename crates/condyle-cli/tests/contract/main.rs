@@ -5,6 +5,7 @@ mod command;
 
 mod batch;
 mod bench;
+mod constrain;
 mod convert;
 mod diff;
 mod document;

@@ -38,8 +38,10 @@
 mod angles;
 mod hierarchy;
 mod read;
+mod replace;
 mod rows;
 mod write;
 
 pub use read::{from_bytes, from_bytes_with};
+pub use replace::with_motion;
 pub use write::{USUAL_UNIT, write};

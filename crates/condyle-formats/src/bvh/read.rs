@@ -68,7 +68,7 @@ pub fn from_bytes_with(bytes: &[u8], assumed: &Assumed) -> Result<Read<Animation
 }
 
 /// The numbers of a joint's channels at rest.
-fn resting(joint: &Joint) -> impl Iterator<Item = f64> + '_ {
+pub(super) fn resting(joint: &Joint) -> impl Iterator<Item = f64> + '_ {
     joint.channels.iter().map(|channel| match channel {
         Channel::Position(axis) => joint.offset[*axis],
         _ => 0.0,
@@ -81,7 +81,7 @@ fn position(joint: &Joint, axis: usize) -> Option<usize> {
 }
 
 /// The bones in the units of the file.
-fn skeleton(joints: &[Joint], warnings: &mut Warnings) -> Skeleton {
+pub(super) fn skeleton(joints: &[Joint], warnings: &mut Warnings) -> Skeleton {
     let bones = joints.iter().map(|joint| {
         let offset = Vec3::from(joint.offset);
         // The numbers of a root are its places, those of another joint steps from its OFFSET.
@@ -156,14 +156,31 @@ fn is_relative(joint: &Joint, first: usize, frames: &[Vec<f64>]) -> bool {
 }
 
 /// One stored number: the column that it is read from, what that is multiplied by, and what is added.
-struct Stored {
-    column: usize,
+pub(super) struct Stored {
+    pub(super) column: usize,
     factor: f64,
     add: f64,
 }
 
-/// The frames in metres and radians, in the order of the model's coordinates.
-fn motion(joints: &[Joint], rows: Rows, unit: f64, warnings: &mut Warnings) -> Motion {
+impl Stored {
+    /// In metres or radians.
+    pub(super) fn value(&self, number: f64) -> f64 {
+        (number + self.add) * self.factor
+    }
+
+    /// In the unit of the file.
+    pub(super) fn number(&self, value: f64) -> f64 {
+        value / self.factor - self.add
+    }
+}
+
+/// Where the numbers of the model's coordinates stand, in its order.
+pub(super) fn stored(
+    joints: &[Joint],
+    rows: &Rows,
+    unit: f64,
+    warnings: &mut Warnings,
+) -> Vec<Stored> {
     let mut stored: Vec<Stored> = vec![];
     let mut first = 0;
     for joint in joints {
@@ -192,12 +209,16 @@ fn motion(joints: &[Joint], rows: Rows, unit: f64, warnings: &mut Warnings) -> M
         }
         first += joint.channels.len();
     }
+    stored
+}
+
+/// The frames in metres and radians, in the order of the model's coordinates.
+fn motion(joints: &[Joint], rows: Rows, unit: f64, warnings: &mut Warnings) -> Motion {
+    let stored = stored(joints, &rows, unit, warnings);
     let times = (0..rows.frames.len()).map(|frame| frame as f64 * rows.frame_time).collect();
     let frames = rows.frames.into_iter().map(|row| {
-        let number = |stored: &Stored| {
-            (row.get(stored.column).copied().unwrap_or(0.0) + stored.add) * stored.factor
-        };
-        stored.iter().map(number).collect()
+        let value = |stored: &Stored| stored.value(row.get(stored.column).copied().unwrap_or(0.0));
+        stored.iter().map(value).collect()
     });
     Motion { times, frames: frames.collect() }
 }

@@ -27,6 +27,8 @@ pub(super) struct Reader<'s> {
     pub(super) constants: HashMap<String, Constant>,
     /// What instances of templates give for their parameters, by their context.
     pub(super) given: HashMap<u32, Given>,
+    /// The text of another file by its path from the document.
+    pub(super) include: &'s mut dyn FnMut(&str) -> Result<String, String>,
 }
 
 /// A table whose keys are known.

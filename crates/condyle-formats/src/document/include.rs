@@ -114,7 +114,7 @@ impl Loader<'_> {
 }
 
 /// A path that a text gives relative to its own folder, relative to the document's folder.
-fn beside(from: &str, name: &str) -> String {
+pub(super) fn beside(from: &str, name: &str) -> String {
     let name = name.replace('\\', "/");
     let folder = from.rsplit_once('/').map_or("", |(folder, _)| folder);
     let whole =
@@ -132,7 +132,8 @@ fn beside(from: &str, name: &str) -> String {
     parts.join("/")
 }
 
-/// The paths that a text includes itself, each with the bytes of its string in the text, quotes and all.
+/// The paths that a text names itself, each with the bytes of its string in the text, quotes and all: what it
+/// includes, and the files of its learned limits.
 ///
 /// None of a text that cannot be parsed.
 ///
@@ -152,13 +153,41 @@ pub fn includes(text: &str) -> Vec<(Range<usize>, String)> {
         DeValue::String(path) => Some((value.span(), path.to_string())),
         _ => None,
     };
-    match table.get_ref().get("include") {
+    let mut paths = match table.get_ref().get("include") {
         None => vec![],
         Some(value) => match value.get_ref() {
             DeValue::Array(list) => list.iter().filter_map(path).collect(),
             _ => path(value).into_iter().collect(),
         },
+    };
+    let top = table.get_ref();
+    let templates = tables(top.get("template")).filter_map(|one| one.get("joint_set"));
+    for sets in top.get("joint_set").into_iter().chain(templates) {
+        for set in tables(Some(sets)) {
+            for component in tables(set.get("component")) {
+                let field = component.get("field").map(Spanned::get_ref);
+                if let Some(DeValue::Table(field)) = field {
+                    paths.extend(field.get("file").and_then(path));
+                }
+            }
+        }
     }
+    paths
+}
+
+/// The tables in a table.
+fn tables<'t, 'v>(
+    value: Option<&'t Spanned<DeValue<'v>>>,
+) -> impl Iterator<Item = &'t DeTable<'v>> {
+    let table = match value.map(Spanned::get_ref) {
+        Some(DeValue::Table(table)) => Some(table),
+        _ => None,
+    };
+    let inner = table.into_iter().flat_map(|table| table.iter().map(|(_, value)| value));
+    inner.filter_map(|value| match value.get_ref() {
+        DeValue::Table(table) => Some(table),
+        _ => None,
+    })
 }
 
 /// Which value is kept where two texts give one.

@@ -12,7 +12,8 @@
 //! templates, typed access to fields, numbers with units, functions, and messages shown beside the text. It
 //! knows nothing of any kind. [`model`] is the kind that describes models; its functions are
 //! available here, too. [`setup`] is how recordings are tracked, [`names`] what their labels are called
-//! in models, [`goals`] what a pose should do, [`recipe`] which markers give the orientation of a segment. [`kind()`] tells the kind of a text.
+//! in models, [`goals`] what a pose should do, [`recipe`] which markers give the orientation of a segment,
+//! [`limit`] which rotations of a segment in another are possible. [`kind()`] tells the kind of a text.
 //!
 //! Reading reports everything that is wrong at once, each with its line and column. Its codes are
 //! `document/...` for what all kinds share, such as a missing key or a wrong type, and `KIND/...`
@@ -28,6 +29,7 @@ mod function;
 pub mod goals;
 mod head;
 mod include;
+pub mod limit;
 pub mod model;
 pub mod names;
 mod number;
@@ -73,8 +75,12 @@ fn read_kind<T>(
 ) -> Result<Read<T>, Error> {
     let mut texts = Texts::default();
     let value = include::load(&mut texts, form, text, include).and_then(|entries| {
-        let mut reader =
-            Reader { texts: &mut texts, constants: HashMap::new(), given: HashMap::new() };
+        let mut reader = Reader {
+            texts: &mut texts,
+            constants: HashMap::new(),
+            given: HashMap::new(),
+            include: &mut *include,
+        };
         if let Some(constants) = entries.iter().find(|e| e.key.text == "constants") {
             reader.define(&constants.node);
         }

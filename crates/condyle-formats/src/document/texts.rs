@@ -100,6 +100,11 @@ impl Texts {
         self.files.len() as u32 - 1
     }
 
+    /// The path of the text in which a spot is; empty for the document itself.
+    pub(super) fn path(&self, spot: Spot) -> &str {
+        self.files.get(spot.file as usize).map_or("", |file| &file.name)
+    }
+
     pub(super) fn has(&self, name: &str) -> bool {
         self.files.iter().any(|f| f.name == name)
     }

@@ -1,7 +1,7 @@
 //! Accessors: numbers of any component type in buffers, interleaved or sparse.
 
-use super::base64;
 use super::json::{Item, LARGEST};
+use crate::text::base64;
 use condyle_diagnostics::Error;
 use serde_json::Value;
 use std::borrow::Cow;

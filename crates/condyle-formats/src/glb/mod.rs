@@ -10,7 +10,6 @@
 //! later than the one before are dropped.
 
 mod accessor;
-mod base64;
 mod bind;
 mod clip;
 mod container;

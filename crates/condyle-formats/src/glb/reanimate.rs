@@ -130,7 +130,8 @@ pub fn reanimate(bytes: &[u8], motion: &NodeMotion, old: Old) -> Result<Read<Vec
             None => splice.add("buffers", json!({ "byteLength": total }).to_string(), false),
         }
     } else {
-        let uri = format!("data:application/octet-stream;base64,{}", super::base64::encode(&added));
+        let uri =
+            format!("data:application/octet-stream;base64,{}", crate::text::base64::encode(&added));
         splice.add("buffers", json!({ "byteLength": added.len(), "uri": uri }).to_string(), false);
     }
     add_animation(&mut splice, &root, animation, old)?;
@@ -424,7 +425,7 @@ fn joined(splice: &mut Splice<'_>, root: &Item<'_>) -> Result<Option<Vec<u8>>, E
     for buffer in root.list("buffers")? {
         let data = buffer.text("uri").and_then(|uri| uri.strip_prefix("data:"));
         let data = data.and_then(|data| data.split_once(";base64,"));
-        let Some(data) = data.and_then(|(_, text)| super::base64::decode(text)) else {
+        let Some(data) = data.and_then(|(_, text)| crate::text::base64::decode(text)) else {
             return Ok(None);
         };
         bytes.resize(bytes.len().next_multiple_of(4), 0);

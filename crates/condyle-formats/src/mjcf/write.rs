@@ -12,6 +12,9 @@ use std::fmt::Write as _;
 const MOST_DIRECTIONS: usize = 6;
 /// The highest power of a coupling.
 const ORDER: usize = 4;
+/// Inertia of every joint itself, in kg or kg·m²: several joints of one body about nearly the same axis have none
+/// between them, and MuJoCo could not solve for their accelerations.
+const ARMATURE: f64 = 1e-3;
 /// A side of a range that has no bound.
 const FAR: f64 = 1e6;
 
@@ -91,7 +94,8 @@ impl<'t> File<'t> {
         let name = escaped(&self.tree.name);
         let _ = writeln!(
             self.out,
-            "<mujoco model=\"{name}\">\n  <compiler angle=\"radian\" autolimits=\"false\"/>\n  <worldbody>"
+            "<mujoco model=\"{name}\">\n  <compiler angle=\"radian\" autolimits=\"false\"/>\n  <default>\n    <joint armature=\"{}\"/>\n  </default>\n  <worldbody>",
+            numbers([ARMATURE])
         );
         let world = self.joints.world.clone();
         self.line(&format!("<body name=\"{world}\"{}>", frame(&base)));

@@ -1,6 +1,7 @@
 //! From a model to a tree of plain joints.
 
-use super::chain::{Link, Measured, Step, simplified};
+use super::blend::shares;
+use super::chain::{Link, Measured, Step, moving, simplified};
 use super::legal::Legal;
 use super::rule::{Rule, Rules, Value};
 use super::{Source, Tree, Variable};
@@ -74,8 +75,8 @@ enum Raw {
 enum Reads {
     /// These values, where all are known.
     Values(Option<Vec<Value>>),
-    /// The values of all joints from this segment on, or from the root.
-    From(Option<SegmentId>),
+    /// The values of all joints from this segment on, or from the root, and others.
+    From(Option<SegmentId>, Vec<Value>),
 }
 
 struct Builder<'m> {
@@ -280,15 +281,19 @@ impl Builder<'_> {
                             }
                         }
                         Reads::Values(None) => drivers = None,
-                        Reads::From(surface) => {
+                        Reads::From(surface, others) => {
                             let path = self.model.path_to_root(id).skip(1);
                             let path = path.take_while(|&above| Some(above) != surface);
-                            let links = path.filter_map(|above| self.link_of.get(&above));
-                            let above = links.flat_map(|&link| self.tree.links[link].steps.iter());
-                            let values: Vec<Value> =
-                                above.chain(&before).filter_map(Step::value).collect();
+                            let mut links: Vec<usize> = path
+                                .filter_map(|above| self.link_of.get(&above).copied())
+                                .collect();
+                            links.reverse();
+                            let above =
+                                links.iter().flat_map(|&link| self.tree.links[link].steps.iter());
+                            let chain: Vec<Step> = above.chain(&before).cloned().collect();
                             if let Some(all) = &mut drivers {
-                                all.extend(values);
+                                all.extend(moving(&chain, self.tree.rules.len()));
+                                all.extend(others);
                             }
                         }
                     }
@@ -313,7 +318,7 @@ impl Builder<'_> {
         let turns = axes.into_iter().zip([turn_x, turn_y, turn_z]);
         steps.extend(turns.map(|(axis, value)| Step::Turn { axis, value }));
         steps.extend(after);
-        let what = listed(names);
+        let what = names.join(", ");
         (steps, Some(Measured { at, rest, slots, drivers, components, what }))
     }
 
@@ -429,10 +434,18 @@ impl Builder<'_> {
                 Some(steps) => steps,
                 None => return raw.push(unknown(None)),
             },
-            (Law::Contact(_), _) => {
+            (Law::Contact(contact), _) => {
+                let drivers = component.by_port().find(|(port, _)| port.name == "drivers");
+                let drivers = drivers.map_or(&[][..], |(_, signals)| signals);
+                let drivers: Option<Vec<Value>> =
+                    drivers.iter().map(|driver| self.scalars.get(driver).copied()).collect();
+                let shares = match drivers {
+                    Some(drivers) => shares(&mut self.tree.rules, &contact.law, &drivers),
+                    None => vec![],
+                };
                 return raw.push(Raw::Unknown {
                     what: what(),
-                    reads: Reads::From(component.segments_at("surface").next()),
+                    reads: Reads::From(component.segments_at("surface").next(), shares),
                     at: Some(at),
                 });
             }

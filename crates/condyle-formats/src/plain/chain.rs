@@ -144,6 +144,36 @@ pub fn simplified(steps: &[Step], rules: &Rules) -> Vec<Step> {
     out
 }
 
+/// The values that a chain depends on: motions that others undo are left out, in whatever order they do.
+pub(super) fn moving(steps: &[Step], count: usize) -> Vec<Value> {
+    let mut candidates: Vec<Value> = steps.iter().filter_map(Step::value).collect();
+    candidates.sort_unstable();
+    candidates.dedup();
+    // Numbers without any relation to each other.
+    let number = |k: usize| 0.9 * ((k * k + 3 * k) as f64 * 0.618_034).fract() - 0.4;
+    let whole = |values: &[f64]| {
+        let turned = |which: usize| {
+            let [x, y, z] = [0, 1, 2].map(|axis| number(3 * which + axis));
+            Quat::exp(Vec3::new(x, y, z)).normalized()
+        };
+        steps.iter().fold(Affine::IDENTITY, |so_far, step| so_far * step.transform(values, &turned))
+    };
+    let mut values: Vec<f64> = (0..count).map(number).collect();
+    let start = whole(&values);
+    candidates.retain(|&value| {
+        let before = values[value];
+        values[value] = before + 0.3;
+        let moved = whole(&values);
+        values[value] = before;
+        let apart = |a: Vec3, b: Vec3| (a - b).norm();
+        apart(start.translation, moved.translation) > 1e-12
+            || apart(start.linear.x, moved.linear.x) > 1e-12
+            || apart(start.linear.y, moved.linear.y) > 1e-12
+            || apart(start.linear.z, moved.linear.z) > 1e-12
+    });
+    candidates
+}
+
 fn undoes(before: &Step, after: &Step) -> bool {
     match (before, after) {
         (Step::Turn { axis, value }, Step::Turn { axis: back, value: same })

@@ -44,7 +44,7 @@ pub fn fit(model: &Model, tree: &mut Tree) -> Vec<Fit> {
     }
     for link in measured {
         let Some(part) = tree.links[link].measured.clone() else { continue };
-        let samples = samples(model, tree, &part.components, 5, 4 * MOST_COEFFICIENTS);
+        let samples = samples(model, tree, &part.components, 5, 8 * MOST_COEFFICIENTS);
         let held = samples_held(model, tree, &part.components);
         let order = fit_part(tree, &part.slots, &part.drivers, &samples, &held);
         fits.push(Fit { link, order, error: LinkError::default() });
@@ -161,7 +161,7 @@ fn fit_part(
 }
 
 /// Least-squares polynomials of an order for every column of `y`; `None` where they have too many coefficients.
-fn polynomials(
+pub(super) fn polynomials(
     order: usize,
     domain: &[(f64, f64)],
     x: &[Vec<f64>],

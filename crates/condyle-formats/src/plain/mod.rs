@@ -16,11 +16,12 @@
 //! | pivot, curve without heading | slides by splines of the parameter, and a turn |
 //! | ellipsoid | three turns, and slides by products of splines |
 //! | compensate of weight 1 | the turns of the ancestors, backwards |
-//! | contact, others | six values that are measured at a pose, then fitted by polynomials ([`fit()`]) |
+//! | contact, others | six values that are measured at a pose, then fitted by polynomials ([`fit()`]); those of a contact by where the segment is and how much each pair of points counts |
 //! | scale, shear | nothing: told with the error that it makes |
 //!
 //! [`measure()`] compares a tree with its model over legal poses.
 
+mod blend;
 mod build;
 mod chain;
 mod fit;

@@ -1,5 +1,7 @@
 //! From bytes to lines, cells and numbers, for every text format.
 
+#[cfg(any(feature = "document", feature = "glb"))]
+pub(crate) mod base64;
 mod decode;
 mod line;
 mod names;

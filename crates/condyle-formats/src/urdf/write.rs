@@ -181,8 +181,10 @@ impl File<'_> {
         origin: &Affine,
         axis: condyle_math::Vec3,
     ) {
-        let (lower, upper) = joint.range.bounds();
-        let bounded = lower.is_finite() || upper.is_finite();
+        let (lower, upper) = self.bounds(joint);
+        // Pinocchio takes a joint without bounds as a point on a circle, which nothing of one number can mimic.
+        let coupled = joint.coupled.is_some() || self.is_mimicked(joint);
+        let bounded = lower.is_finite() || upper.is_finite() || coupled;
         let kind = match (joint.turns, bounded) {
             (true, true) => "revolute",
             (true, false) => "continuous",
@@ -207,6 +209,25 @@ impl File<'_> {
             );
         }
         self.ends(kind, &joint.name, parent, child, origin, &inside);
+    }
+
+    /// The range of a joint, or where that of the joint that it mimics takes it.
+    fn bounds(&self, joint: &pieces_of_one::Joint) -> (f64, f64) {
+        let Some((leader, coefficients)) = &joint.coupled else { return joint.range.bounds() };
+        let (lower, upper) = self.joints.all[*leader].range.bounds();
+        let at = |i: usize| coefficients.get(i).copied().unwrap_or(0.0);
+        let ends = [lower, upper].map(|x| at(1) * x + at(0));
+        match ends.iter().any(|x| x.is_nan()) {
+            true => (f64::NEG_INFINITY, f64::INFINITY),
+            false => (ends[0].min(ends[1]), ends[0].max(ends[1])),
+        }
+    }
+
+    fn is_mimicked(&self, joint: &pieces_of_one::Joint) -> bool {
+        self.joints.all.iter().any(|other| {
+            let leader = other.coupled.as_ref().map(|(leader, _)| &self.joints.all[*leader]);
+            leader.is_some_and(|leader| leader.name == joint.name)
+        })
     }
 
     fn ends(

@@ -13,4 +13,4 @@ mod principal;
 mod spread;
 
 pub use cloud::{Cloud, Gathered, SPACING};
-pub use field::{Answer, Field, Settings, State};
+pub use field::{About, Answer, Field, LearnedLimit, Settings, State, learn};

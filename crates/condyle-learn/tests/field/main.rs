@@ -2,21 +2,27 @@
 
 mod shapes;
 
-use condyle_learn::limits::{Cloud, Field, Settings, State};
+use condyle_learn::limits::{Cloud, Field, Settings, State, learn};
 use condyle_math::{Quat, Vec3};
 use shapes::{Random, SHAPES, Shape, quantile};
 
 fn learned(shape: &Shape, count: usize, random: &mut Random) -> Field {
     let samples = shape.samples(count, random);
-    Field::learn(Cloud::gather(&[&samples], 0.0).unwrap(), &Settings::default()).unwrap()
+    learn(&Cloud::gather(&[&samples], 0.0).unwrap(), &Settings::default()).unwrap()
 }
 
 #[test]
 fn three_degrees_from_the_boundary_it_is_right() {
-    // Of all shapes the shoulder has the sharpest edges and the last one a hole.
-    for shape in [SHAPES[0], SHAPES[5]] {
+    // Of all shapes the shoulder has the sharpest edges and the last one a hole. 0.99 and 0.998, from 1500
+    // samples 0.955 and 0.95, of other samples; two standard deviations of 400 points are 0.01.
+    for (shape, count, least) in [
+        (SHAPES[0], 5000, 0.97),
+        (SHAPES[5], 5000, 0.985),
+        (SHAPES[0], 1500, 0.93),
+        (SHAPES[5], 1500, 0.93),
+    ] {
         let mut random = Random(7);
-        let field = learned(&shape, 5000, &mut random);
+        let field = learned(&shape, count, &mut random);
         let boundary = shape.boundary(20_000, &mut random);
         let points = boundary.at(&shape, 3f64.to_radians(), 400, &mut random);
         let share = |inside: bool| {
@@ -28,8 +34,7 @@ fn three_degrees_from_the_boundary_it_is_right() {
             own.iter().filter(|right| **right).count() as f64 / own.len() as f64
         };
         let balanced = 0.5 * (share(true) + share(false));
-        // 0.988 and 0.995 of other samples; two standard deviations of 400 points are 0.01.
-        assert!(balanced >= 0.97, "{}: {balanced}", shape.name);
+        assert!(balanced >= least, "{}, {count}: {balanced}", shape.name);
     }
 }
 
@@ -49,6 +54,31 @@ fn the_nearest_valid_rotation_is_at_the_true_boundary_and_stays() {
     }
     assert!(quantile(&mut off, 0.5) < 1.5);
     assert!(quantile(&mut off, 0.99) < 4.0);
+}
+
+#[test]
+fn no_place_on_its_boundary_is_nearer_than_the_nearest() {
+    let mut random = Random(29);
+    let field = learned(&SHAPES[0], 1500, &mut random);
+    let mut outside = || loop {
+        let q = random.rotation();
+        if field.distance(q) < 0.0 {
+            break q;
+        }
+    };
+    let places: Vec<Quat> = (0..30_000).map(|_| field.nearest(outside())).collect();
+    let mut worse = 0;
+    for _ in 0..500 {
+        let q = outside();
+        let nearest = field.nearest(q);
+        assert!(field.distance(nearest) >= 0.0);
+        assert!(field.nearest(nearest).angle_to(nearest) < 1e-9);
+        let best = places.iter().map(|p| q.dot(*p).abs()).fold(0.0, f64::max).min(1.0);
+        let more = q.angle_to(nearest) - 2.0 * best.acos();
+        assert!(more < 1f64.to_radians(), "{q:?}: {more}");
+        worse += usize::from(more > 0.1f64.to_radians());
+    }
+    assert!(worse <= 1, "{worse} of 500");
 }
 
 #[test]
@@ -82,7 +112,7 @@ fn the_volume_is_the_true_one_in_any_axes() {
     let shares = turns.map(|turn| {
         let turned: Vec<Quat> = samples.iter().map(|q| turn * *q).collect();
         let cloud = Cloud::gather(&[&turned], 0.0).unwrap();
-        let field = Field::learn(cloud, &Settings::default()).unwrap();
+        let field = learn(&cloud, &Settings::default()).unwrap();
         // The standard deviation of the share is 0.6 % of it.
         let all = 300_000;
         let valid = (0..all).filter(|_| field.state(random.rotation()).0 == State::Valid).count();
@@ -103,7 +133,7 @@ fn the_middle_of_a_removed_ball_is_unknown_and_what_is_deep_inside_is_not() {
     let samples: Vec<Quat> =
         SHAPES[1].samples(5000, &mut random).into_iter().filter(|q| !removed(*q)).collect();
     let cloud = Cloud::gather(&[&samples], 0.0).unwrap();
-    let field = Field::learn(cloud, &Settings::default()).unwrap();
+    let field = learn(&cloud, &Settings::default()).unwrap();
     assert!(field.learned().spacing < 7f64.to_radians());
     for _ in 0..500 {
         let middle = centre * Quat::exp(random.direction() * (12f64.to_radians() * random.unit()));

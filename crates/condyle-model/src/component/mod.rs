@@ -17,6 +17,7 @@
 //! | [`JointCone`] | angles of a ball joint, or its orientation → the legal ones |
 //! | [`Ellipse`] | two scalars → the legal ones |
 //! | [`HalfSpace`] | scalars → the legal ones |
+//! | [`FieldLimit`] | an orientation → the nearest one that people take |
 //! | [`RelativeOrientation`] | two segments → orientation |
 //! | [`RelativePosition`] | two segments → scalars: where a point of one is in the other |
 //! | [`Angles`] | orientation → three angles, or twist and swing |
@@ -51,6 +52,7 @@ mod custom;
 mod depend;
 mod ellipse;
 mod ellipsoid;
+mod field;
 mod geometry;
 mod half_space;
 mod map;
@@ -79,6 +81,7 @@ pub use custom::{Custom, ErasedLaw, LawDual, Parameters, Registry};
 pub use depend::Depend;
 pub use ellipse::Ellipse;
 pub use ellipsoid::{Ellipsoid, SurfaceAxis};
+pub use field::FieldLimit;
 pub use half_space::HalfSpace;
 pub use map::Map;
 pub use pivot::{Centre, Pivot, PivotError};
@@ -300,6 +303,8 @@ laws! {
         Ellipse(Ellipse),
         /// Scalars of which a sum is limited.
         HalfSpace(HalfSpace),
+        /// An orientation limited by a learned field.
+        Field(FieldLimit),
     }
     motions {
         /// Contact of a segment with an ellipsoid.

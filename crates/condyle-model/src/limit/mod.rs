@@ -15,12 +15,15 @@
 //!
 //! A [`Range`] limits one coordinate, a [`Cone`] swing and twist of a ball joint together. The limits that
 //! are laws of components are with them: [`JointCone`](crate::component::JointCone),
-//! [`Ellipse`](crate::component::Ellipse), [`HalfSpace`](crate::component::HalfSpace).
+//! [`Ellipse`](crate::component::Ellipse), [`HalfSpace`](crate::component::HalfSpace),
+//! [`FieldLimit`](crate::component::FieldLimit) of a [`field`] that was learned.
 
 mod cone;
+pub mod field;
 mod range;
 
 pub use cone::{Cone, ConeError, ConePoint, Legal, Projected, Projection};
+pub use field::{Field, LearnedLimit};
 pub use range::Range;
 
 /// The most numbers that one limit bounds together.

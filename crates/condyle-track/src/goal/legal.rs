@@ -48,26 +48,44 @@ const NEAR: f64 = 0.25 * REST_ANGLE;
 pub fn nearest_legal(model: &Model, asked: &[f64]) -> Option<Vec<f64>> {
     let open = model.without_closures();
     let program = Program::compile(&open);
-    let within = within_ranges(&open, asked);
-    if within == asked && worst_row(&program, asked) >= -BROKEN {
+    if within_ranges(&open, asked) == asked && worst_row(&program, asked) >= -BROKEN {
         return None;
     }
+    searched(&open, &program, asked)
+}
+
+/// As [`nearest_legal`], with the loops of the model closed as well; a pose is always looked for.
+///
+/// # Panics
+/// If `asked` has not as many numbers as the model stores.
+pub fn nearest_closed(model: &Model, asked: &[f64]) -> Option<Vec<f64>> {
+    searched(model, &Program::compile(model), asked)
+}
+
+/// The nearest pose that keeps the limits and the loops of a model.
+fn searched(open: &Model, program: &Program, asked: &[f64]) -> Option<Vec<f64>> {
+    let within = within_ranges(open, asked);
     let stiffness = open.coordinates().iter().map(|c| match c.kind {
         CoordinateKind::Translation => REST_LENGTH,
         _ => REST_ANGLE,
     });
     let rest = Rest { pose: asked.to_vec(), stiffness: stiffness.collect(), sums: vec![] };
     let goals = Goals { goals: vec![], held: vec![], rest, limits: true };
-    let question = Question::new(&open, &goals);
+    let question = Question::new(open, &goals);
     let stage =
         || Stage { exact: None, weighted: 1.0, rest: 1.0, near: goals.rest.clone(), curved: true };
     // From the asked pose, from where its limits on coordinates put it, and from the defaults.
-    let mut posed = Pose::new(&program);
+    let mut posed = Pose::new(program);
     let projected = match program.evaluate(asked, Mode::Posed, &mut posed) {
         Ok(()) => posed.effective().to_vec(),
         Err(_) => within.clone(),
     };
-    let defaults = within_ranges(&open, &open.defaults());
+    // What limits do not move stays as it is asked for, wherever a descent starts.
+    let mut defaults = within.clone();
+    let all = within_ranges(open, &open.defaults());
+    for place in question.coordinates.iter().map(|&id| open.stored_range(id)) {
+        defaults[place.clone()].copy_from_slice(&all[place]);
+    }
     // Where a row has no slope, as that of a straight arm, only another start leads on; and what is far
     // away may be nearer on another way.
     let drawn = (1..=DRAWN).map(|start| start_of(&question, start));
@@ -78,7 +96,7 @@ pub fn nearest_legal(model: &Model, asked: &[f64]) -> Option<Vec<f64>> {
             break;
         }
         let Some(end) = descend(&question, stage(), &start, &CLOSE) else { continue };
-        let row = worst_row(&program, &end.stored);
+        let row = worst_row(program, &end.stored).min(-end.answer.closure_error);
         let broken = if row < -SOLVED { -row } else { 0.0 };
         // Legal ones first, then the nearest.
         if best.as_ref().is_none_or(|best| (broken, end.value) < (best.0, best.1)) {

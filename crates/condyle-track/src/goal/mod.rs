@@ -51,7 +51,7 @@ mod search;
 mod tests;
 
 pub use answer::{Answer, By, Miss};
-pub use legal::nearest_legal;
+pub use legal::{nearest_closed, nearest_legal};
 pub use rest::{REST_ANGLE, REST_LENGTH, Rest};
 pub use search::solve;
 

@@ -36,7 +36,7 @@ pub(super) struct End {
     pub stored: Vec<f64>,
     /// What was minimised.
     pub value: f64,
-    answer: Answer,
+    pub(super) answer: Answer,
 }
 
 /// The legal pose nearest to rest that meets the goals, else the one that misses them least.

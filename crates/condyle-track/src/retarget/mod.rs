@@ -16,6 +16,8 @@
 //!    R_target(t) = W · R_source(t) · S · T⁻¹,       W from the source's up and facing to the target's
 //!    ```
 //!
+//!    Feet and hands that a recording has turned over, by half a turn about their length, are turned back first
+//!    (`overturned`), with a warning.
 //! 2. **Question.** For each frame the target should meet, weighted, lines from joint to joint
 //!    ([`DirectionTarget`](crate::DirectionTarget): upper arm, forearm, thigh, shank, foot, and the trunk from
 //!    between the hips to the neck), orientations (strong for pelvis, chest, head and feet; weak for
@@ -40,6 +42,7 @@ mod contact;
 mod feet;
 mod held;
 mod measure;
+mod overturned;
 mod question;
 mod sampled;
 mod stance;
@@ -104,6 +107,7 @@ pub fn retarget(
     let to = Stance::of_defaults(target, &mut warnings)?;
     let necks = [source, target].iter().all(|figure| figure.body.get(Part::Neck).is_some());
     let mut sampled = Sampled::new(source, motion, &from, &to, necks)?;
+    overturned::turn_back(&mut sampled, &mut warnings);
     sampled.settle_soles(&from, &to);
     let plan = question::Plan::new(source, target, &from, &to, &sampled);
     let free = plan.solve(target, options, None, None, &motion.times, progress);

@@ -3,7 +3,7 @@
 use super::body::{Anchor, Part, Side};
 use super::feet::Feet;
 use super::sampled::{Sampled, middle, trunk};
-use super::stance::Stance;
+use super::stance::{Stance, arc, unit};
 use super::{Humanoid, Options, Posed, held};
 use crate::answer::FrameAnswer;
 use crate::target::rotation_of;
@@ -123,7 +123,7 @@ impl Plan {
                 frames.iter().map(|frame| Quat::from_mat3(*frame * back)).collect();
             if let Some(end) = target.body.end(part) {
                 let start = target.body.start(part).unwrap_or(anchor);
-                plan.line(target, part, [start, end], sampled, &turns);
+                plan.line(target, part, [start, end], sampled, &turns, [from, to]);
             }
             plan.turns.push(Turn { part, segment: anchor.segment, wanted: turns });
         }
@@ -164,6 +164,7 @@ impl Plan {
         [from, to]: [Anchor; 2],
         sampled: &Sampled,
         turns: &[Quat],
+        stances: [&Stance; 2],
     ) {
         let weight = match part {
             Part::UpperArm(_)
@@ -181,7 +182,12 @@ impl Plan {
             let axes = rotation_of(pose.segment(target.body.get(part)?.segment).linear);
             Some(axes.transpose() * along * (1.0 / along.norm().max(1e-12)))
         };
+        let girdle = match part {
+            Part::Clavicle(side) => girdle(side, sampled, stances),
+            _ => None,
+        };
         let wanted = match (part, sampled.lines.get(&part)) {
+            _ if girdle.is_some() => girdle.unwrap_or_default(),
             (Part::Foot(_) | Part::Toes(_) | Part::Clavicle(_), _) => match at_rest() {
                 Some(own) => turns.iter().map(|turn| turn.to_mat3() * own).collect(),
                 None => return,
@@ -208,6 +214,7 @@ impl Plan {
         let open = Options { limits: false, ..options };
         let free = (options.limits && start.is_none())
             .then(|| self.solve(target, open, None, None, times, &mut || {}));
+        let first = (!options.limits && start.is_none()).then(|| self.first(target)).flatten();
         let steps = self.steps(times.len(), start.is_some());
         let targets = self.targets(target, &steps, feet);
         let rules = Rules { limits: options.limits, tolerance: 1e-6 };
@@ -219,19 +226,29 @@ impl Plan {
             if let Some(own) = start.and_then(|start| start.frames.get(frame)) {
                 answer.coordinates.clone_from(own);
             }
+            match (step, &first) {
+                (Step::Way { from: None, .. }, Some(_)) => continue,
+                (Step::Frame(0), Some(first)) => answer.coordinates.clone_from(first),
+                _ => {}
+            }
             let before = answer.minimised();
             tracker.descend(&mut scratch, &[], frame, &mut answer);
+            // Without limits nothing is at a bound.
+            tracker.cross_bounds(&mut scratch, &[], frame, &mut answer);
             if matches!(step, Step::Way { .. }) {
                 let last = matches!(steps.get(frame + 1), Some(Step::Frame(_)));
-                if last && tracker.unwind(&mut answer.coordinates) {
+                // Frames keep the names that the first one gives its postures.
+                if last && tracker.rename(&mut answer.coordinates) {
                     tracker.descend(&mut scratch, &[], frame, &mut answer);
                 }
                 continue;
             }
             if let (Some(free), Step::Frame(of)) = (&free, step) {
                 let mut other = FrameAnswer::start(&free.frames[*of]);
-                tracker.unwind(&mut other.coordinates);
+                tracker.rename(&mut other.coordinates);
                 tracker.descend(&mut scratch, &[], frame, &mut other);
+                // Three angles may name the free one's posture in a way that limits forbid.
+                tracker.cross_bounds(&mut scratch, &[], frame, &mut other);
                 if other.minimised() < BETTER * answer.minimised() {
                     answer = other;
                 }
@@ -247,6 +264,24 @@ impl Plan {
             progress();
         }
         Motion { times: times.to_vec(), frames }
+    }
+
+    /// The posture of the first frame within limits, by way from rest: where a motion without limits begins.
+    ///
+    /// From a posture in which an arm hangs it can be raised in either direction of its plane of elevation; an elevation
+    /// below 0 fits as well, but not what a rhythm makes of it.
+    fn first(&self, target: Humanoid<'_>) -> Option<Vec<f64>> {
+        let steps = self.steps(1, false);
+        let targets = self.targets(target, &steps, None);
+        let rules = Rules { limits: true, tolerance: 1e-6 };
+        let tracker = Tracker::new(target.model.with_locked(held::held(target)), targets, rules);
+        let mut scratch = Scratch::new(&tracker);
+        let mut answer = FrameAnswer::start(&tracker.defaults);
+        for step in 0..steps.len() {
+            tracker.descend(&mut scratch, &[], step, &mut answer);
+            tracker.cross_bounds(&mut scratch, &[], step, &mut answer);
+        }
+        answer.coordinates.iter().all(|value| value.is_finite()).then_some(answer.coordinates)
     }
 
     /// All frames, with ways from rest and across jumps unless each has a start of its own.
@@ -350,6 +385,28 @@ impl Plan {
         }));
         targets
     }
+}
+
+/// Where a collar bone points: as far from where it rests in the chest as the source's, along the shortest arc.
+///
+/// How it turns about its own length is left out. Collar bones lie in different directions in different skeletons,
+/// so that the axial turn of one would move the end of another.
+fn girdle(side: Side, sampled: &Sampled, stances: [&Stance; 2]) -> Option<Vec<Vec3>> {
+    let rest = |stance: &Stance| {
+        let [a, b] =
+            [Part::Clavicle(side), Part::UpperArm(side)].map(|part| stance.points.get(&part));
+        let along = *b? - *a?;
+        (along.norm() > 1e-9).then(|| stance.axes.transpose() * unit(along))
+    };
+    let [theirs, own] = stances.map(rest);
+    let (theirs, own) = (theirs?, own?);
+    let chests = sampled.turned.get(&Part::Chest)?;
+    let lines = sampled.lines.get(&Part::Clavicle(side))?;
+    let wanted = chests.iter().zip(lines).map(|(chest, line)| {
+        let now = chest.transpose() * *line;
+        *chest * (arc(theirs, now) * own)
+    });
+    Some(wanted.collect())
 }
 
 /// The rotations that a neck of several bones and its head have together; none of a neck of one bone.

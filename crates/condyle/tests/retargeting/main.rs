@@ -2,6 +2,9 @@
 //! facing and names are. What is expected is computed from the places of joints alone.
 
 mod figure;
+mod limits;
+mod overturned;
+mod walking;
 
 use condyle::formats::document::names;
 use condyle::math::Vec3;

@@ -98,6 +98,19 @@ fn limit_json(law: &Law) -> Option<Value> {
             "tilt": ellipse.tilt(),
         }),
         Law::HalfSpace(half) => json!({ "normal": half.normal(), "bound": half.bound() }),
+        Law::Field(field) => {
+            let about = field.limit.about();
+            json!({
+                "limit": about.name,
+                "child": about.child,
+                "reference": about.reference,
+                "source": about.source,
+                "population": about.population,
+                "samples": field.limit.ground().samples.len(),
+                "share": field.limit.stated().map(|learned| learned.valid),
+                "strict": field.strict,
+            })
+        }
         Law::Depend(depend) => {
             let domain = |f: &condyle::math::function::Function| json!({ "domain": f.domain() });
             json!({
@@ -161,6 +174,18 @@ pub(super) fn limit_rows(model: &Model) -> Vec<Vec<String>> {
                 let how =
                     format!("[{}] times these at most {:.4}", normal.join(", "), half.bound());
                 (names(&component.inputs), how)
+            }
+            Law::Field(field) => {
+                let about = field.limit.about();
+                let share = field.limit.stated().map_or(String::new(), |learned| {
+                    format!(", {:.1} % of all rotations", 100.0 * learned.valid)
+                });
+                let source = match about.source.is_empty() {
+                    true => String::new(),
+                    false => format!("; {}", about.source),
+                };
+                let samples = field.limit.ground().samples.len();
+                (names(&component.inputs), format!("{samples} samples{share}{source}"))
             }
             Law::Contact(Contact { most_gap, law, .. }) => {
                 let radii = law.radii().to_array().map(length);

@@ -48,24 +48,25 @@ pub(super) fn of_trial(run: &Digest, trial: &Path, places: &Places) -> Option<St
 }
 
 /// What a report says about how it came about.
-pub(super) fn mark(made_from: Option<&str>, results: &[(&str, String)]) -> Value {
+pub(in crate::commands) fn mark(made_from: Option<&str>, results: &[(&str, String)]) -> Value {
     let results: serde_json::Map<String, Value> =
         results.iter().map(|(what, digest)| ((*what).to_owned(), json!(digest))).collect();
     json!({ "made_from_sha256": made_from, "results_sha256": results })
 }
 
-/// The report of a recording that is done: made from the same, with results that are still as written.
-pub(super) fn found(made_from: &str, places: &Places) -> Option<Value> {
-    let report = std::fs::read(places.report.as_ref()?).ok()?;
+/// The report of an input that is done: made from the same, with results that are still as written.
+pub(in crate::commands) fn found(
+    made_from: &str,
+    report: Option<&Path>,
+    results: &[(&str, &Path)],
+) -> Option<Value> {
+    let report = std::fs::read(report?).ok()?;
     let report: Value = serde_json::from_slice(&report).ok()?;
     let mark = report.get("resume")?;
-    let as_written = |what: &str, place: Option<&Path>| match place {
-        None => true,
-        Some(place) => of_file(place)
-            .is_ok_and(|digest| mark["results_sha256"][what].as_str() == Some(&*digest)),
+    let as_written = |(what, place): &(&str, &Path)| {
+        of_file(place).is_ok_and(|digest| mark["results_sha256"][*what].as_str() == Some(&*digest))
     };
-    let done = mark["made_from_sha256"].as_str() == Some(made_from)
-        && as_written("motion", places.motion.as_deref())
-        && as_written("errors", places.errors.as_deref());
+    let done =
+        mark["made_from_sha256"].as_str() == Some(made_from) && results.iter().all(as_written);
     done.then_some(report)
 }

@@ -17,6 +17,12 @@ pub(super) struct Places {
 }
 
 impl Places {
+    /// What is written beside the report, by name.
+    pub(super) fn results(&self) -> Vec<(&'static str, &Path)> {
+        let named = [("motion", &self.motion), ("errors", &self.errors)];
+        named.into_iter().filter_map(|(what, place)| Some((what, place.as_deref()?))).collect()
+    }
+
     pub(super) fn all(&self) -> impl Iterator<Item = &Path> {
         [&self.motion, &self.errors, &self.report].into_iter().flatten().map(PathBuf::as_path)
     }
@@ -24,7 +30,7 @@ impl Places {
 
 /// What a path of an argument means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+pub(in crate::commands) enum Kind {
     /// Standard output, a pipe or a device.
     Stream,
     Folder,
@@ -33,7 +39,7 @@ enum Kind {
 
 impl Kind {
     /// A folder is one, or is not there yet and ends in `/` or has no ending.
-    fn of(path: &Path) -> Self {
+    pub(in crate::commands) fn of(path: &Path) -> Self {
         let text = path.as_os_str().to_string_lossy();
         if path.is_dir() || text.ends_with(std::path::is_separator) {
             Self::Folder
@@ -131,7 +137,7 @@ pub(super) fn plan(asked: &Track) -> Result<(Vec<Places>, &'static Format), Fail
     Ok((places, format))
 }
 
-fn must_end(path: &Path, ending: &str, what: &str) -> Result<(), Failure> {
+pub(in crate::commands) fn must_end(path: &Path, ending: &str, what: &str) -> Result<(), Failure> {
     match open::ending(path) == ending {
         true => Ok(()),
         false => Err(Failure::new(format!(
@@ -142,7 +148,7 @@ fn must_end(path: &Path, ending: &str, what: &str) -> Result<(), Failure> {
 }
 
 /// The name of a recording without folder and ending.
-pub(super) fn stem(trial: &Path) -> String {
+pub(in crate::commands) fn stem(trial: &Path) -> String {
     match open::is_standard_input(trial) {
         true => "stdin".to_owned(),
         false => trial.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
@@ -151,7 +157,7 @@ pub(super) fn stem(trial: &Path) -> String {
 
 /// The folder of each recording, from the last folder that holds them all; none of those that come
 /// through pipes.
-fn folders(trials: &[PathBuf]) -> Vec<PathBuf> {
+pub(in crate::commands) fn folders(trials: &[PathBuf]) -> Vec<PathBuf> {
     let of = |trial: &PathBuf| -> Option<Vec<std::ffi::OsString>> {
         if output::is_stream(trial) {
             return None;

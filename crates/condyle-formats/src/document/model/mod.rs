@@ -36,6 +36,7 @@ mod write;
 
 pub use keys::keys;
 pub use write::write;
+pub(super) use write::{number, numbers, text};
 
 use self::read::ModelReader;
 use super::{Form, Kind, read_kind};
@@ -177,7 +178,7 @@ pub fn read_with(
     laws: &Registry,
 ) -> Result<Read<Document>, Error> {
     let read = read_kind(&FORM, text, include, |reader, top| {
-        let mut reader = ModelReader { reader, laws };
+        let mut reader = ModelReader { reader, laws: laws.clone(), fields: HashMap::new() };
         let draft = reader.draft(top);
         resolve::build(draft, reader.texts)
     })?;

@@ -3,15 +3,18 @@
 use super::value::At;
 use crate::Error;
 use crate::exchange::AXES;
-use condyle_math::{EulerOrder, Vec3};
+use condyle_learn::limits::field::made;
+use condyle_math::{EulerOrder, Quat, Vec3};
 use condyle_model::Law;
 use condyle_model::component::{
     Along, AngleNames, Angles, Ball, Centre, Combine, Compensate, ConstantCurvature, Contact,
-    ContactPair, Curve, Depend, Ellipse, Ellipsoid, Gliding, HalfSpace, Heading, JointCone, Map,
-    Parameters, Pivot, Place, Product, Reflection, Registry, RelativeOrientation, RelativePosition,
-    Rotate, Scale, Shear, SurfaceAxis, Swinging, Translate,
+    ContactPair, Curve, Depend, Ellipse, Ellipsoid, FieldLimit, Gliding, HalfSpace, Heading,
+    JointCone, Map, Parameters, Pivot, Place, Product, Reflection, Registry, RelativeOrientation,
+    RelativePosition, Rotate, Scale, Shear, SurfaceAxis, Swinging, Translate,
 };
+use condyle_model::limit::field::{About, Chart, Ground, Known, LearnedLimit, Settings, snapped};
 use condyle_model::limit::{Cone, ConePoint, Projection};
+use std::sync::Arc;
 
 /// The law of a component.
 pub(super) fn law(at: &At<'_>, laws: &Registry) -> Result<Law, Error> {
@@ -49,6 +52,7 @@ pub(super) fn law(at: &At<'_>, laws: &Registry) -> Result<Law, Error> {
             let half = HalfSpace::new(p.key("normal")?.numbers()?, p.key("bound")?.number()?);
             Law::HalfSpace(half.map_err(|error| p.error(error, "correct it"))?)
         }
+        "field" => field(&p)?,
         "contact" => contact(&p, &inputs)?,
         "rotate" => Law::Rotate(Rotate { axis: p.key("axis")?.vector()? }),
         "translate" => Law::Translate(Translate { axis: p.key("axis")?.vector()? }),
@@ -157,6 +161,86 @@ fn cone(p: &At<'_>) -> Result<Law, Error> {
     );
     let cone = cone.map_err(|error| p.error(error, "correct it"))?;
     Ok(Law::Cone(JointCone { of, cone }))
+}
+
+fn field(p: &At<'_>) -> Result<Law, Error> {
+    let quaternion = |at: &At<'_>| -> Result<Quat, Error> {
+        let q = Quat::from(at.some::<4>()?);
+        match (q.dot(q).sqrt() - 1.0).abs() < 1e-6 {
+            true => Ok(q),
+            false => Err(at.error("this is no unit quaternion", "give x, y, z, w of length 1")),
+        }
+    };
+    let text = |key: &str| p.key(key)?.text().map(str::to_owned);
+    let texts = |key: &str| -> Result<Vec<String>, Error> {
+        p.key(key)?.list()?.iter().map(|name| name.text().map(str::to_owned)).collect()
+    };
+    let about = About {
+        name: text("name")?,
+        child: text("child")?,
+        reference: p.perhaps("reference").map(|at| at.text().map(str::to_owned)).transpose()?,
+        source: text("source")?,
+        population: text("population")?,
+        frames: text("frames")?,
+        takes: texts("names")?,
+    };
+    let rotations = p.key("rotations")?;
+    let samples = rotations
+        .list()?
+        .iter()
+        .map(|q| Ok(snapped(quaternion(q)?)))
+        .collect::<Result<Vec<_>, Error>>()?;
+    let given = p.key("takes")?;
+    let takes = given.list()?.iter().map(At::count).collect::<Result<Vec<_>, _>>()?;
+    let sum: usize = takes.iter().map(|count| *count as usize).sum();
+    if samples.is_empty() || sum != samples.len() {
+        let message = format!("{sum} rotations of takes, but {} are there", samples.len());
+        return Err(given.error(message, "give the number of rotations of each take, at least one"));
+    }
+    let nodes = p.key("nodes")?;
+    let radii = p.key("radii")?;
+    let settings = Settings {
+        nodes: nodes.count()? as usize,
+        radius: radii.some()?,
+        gap: p.perhaps("layer").map(|at| at.number()).transpose()?,
+        hole: p.perhaps("hole").map(|at| at.some()).transpose()?,
+    };
+    let [least, most] = settings.radius;
+    if !(24..=256).contains(&settings.nodes) {
+        return Err(nodes.error("there are not 24 to 256 nodes", "give as many"));
+    }
+    if !(least > 0.0 && least <= most && most < std::f64::consts::PI) {
+        return Err(radii.error("they do not rise between 0 and half a turn", "correct them"));
+    }
+    let known = match p.perhaps("known") {
+        None => None,
+        Some(at) => {
+            let [spacing, radius, gap] =
+                ["spacing", "radius", "gap"].map(|key| at.key(key)?.number());
+            let (spacing, radius, gap) = (spacing?, radius?, gap?);
+            if !(spacing > 0.0 && radius > 0.0 && gap >= 0.0 && radius < std::f64::consts::PI) {
+                return Err(
+                    at.error("these are no angles between 0 and half a turn", "correct them")
+                );
+            }
+            Some(Known { spacing, radius, gap })
+        }
+    };
+    let [left, right] = p.key("axes")?.two()?;
+    let chart = Chart::of_sides([quaternion(&left)?, quaternion(&right)?]);
+    let thinned = p.key("thinned")?.number()?;
+    let ground = Ground { samples, takes, thinned, chart, settings, known };
+    let mirrored = match p.perhaps("mirrored") {
+        Some(at) => Reflection::new(axis(&at)?),
+        None => None,
+    };
+    Ok(Law::Field(FieldLimit {
+        limit: Arc::new(LearnedLimit::new(about, Arc::new(ground), None, made)),
+        in_reference: quaternion(&p.key("in_reference")?)?,
+        in_segment: quaternion(&p.key("in_segment")?)?,
+        mirrored,
+        strict: p.key("strict")?.flag()?,
+    }))
 }
 
 fn contact(p: &At<'_>, inputs: &At<'_>) -> Result<Law, Error> {

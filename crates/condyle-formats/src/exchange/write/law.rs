@@ -7,9 +7,11 @@ use condyle_math::function::SimmSpline;
 use condyle_model::Law;
 use condyle_model::component::{
     Along, AngleNames, Angles, Ball, Centre, Combine, Compensate, ConstantCurvature, Contact,
-    ContactPair, Curve, Depend, Ellipsoid, Gliding, Heading, JointCone, Map, Place, Product,
-    RelativeOrientation, RelativePosition, Rotate, Scale, Shear, SurfaceAxis, Swinging, Translate,
+    ContactPair, Curve, Depend, Ellipsoid, FieldLimit, Gliding, Heading, JointCone, Map, Place,
+    Product, RelativeOrientation, RelativePosition, Rotate, Scale, Shear, SurfaceAxis, Swinging,
+    Translate,
 };
+use condyle_model::limit::field::{About, Ground, Known, Settings};
 use condyle_model::limit::{ConePoint, Projection};
 use serde_json::{Value, json};
 
@@ -49,6 +51,7 @@ pub(super) fn parameters(law: &Law) -> Value {
             "tilt": ellipse.tilt(),
         }),
         Law::HalfSpace(half) => json!({ "normal": half.normal(), "bound": half.bound() }),
+        Law::Field(law) => field(law),
         Law::Contact(law) => contact(law),
         Law::Rotate(Rotate { axis }) | Law::Translate(Translate { axis }) => {
             json!({ "axis": vector(*axis) })
@@ -122,6 +125,39 @@ fn cone(JointCone { of, cone }: &JointCone) -> Value {
             Projection::Nearest => "nearest",
             Projection::TowardRest => "toward_rest",
         },
+    })
+}
+
+/// A learned limit: axes, and all that it was learned from.
+fn field(FieldLimit { limit, in_reference, in_segment, mirrored, strict }: &FieldLimit) -> Value {
+    let About { name, child, reference, source, population, frames, takes: names } = limit.about();
+    let Ground { samples, takes, thinned, chart, settings, known } = &**limit.ground();
+    let Settings { nodes, radius, gap, hole } = settings;
+    let known = known.map(
+        |Known { spacing, radius, gap }| json!({ "spacing": spacing, "radius": radius, "gap": gap }),
+    );
+    let rotations: Value = samples.iter().map(|q| json!(q.to_array())).collect();
+    json!({
+        "in_reference": in_reference.to_array(),
+        "in_segment": in_segment.to_array(),
+        "mirrored": mirrored.map(|at| AXES[at.axis() % 3]),
+        "strict": strict,
+        "name": name,
+        "child": child,
+        "reference": reference,
+        "source": source,
+        "population": population,
+        "frames": frames,
+        "names": names,
+        "takes": takes,
+        "thinned": thinned,
+        "axes": chart.sides().map(|q| q.to_array()),
+        "nodes": nodes,
+        "radii": radius,
+        "layer": gap,
+        "hole": hole,
+        "known": known,
+        "rotations": rotations,
     })
 }
 

@@ -4,8 +4,8 @@
 //! ball of a node is nearly always that of a neighbour or its own: sweeps forth and back, as in raster
 //! distance transforms, settle all of them, whatever the number of balls.
 
-use super::lattice::Lattice;
 use condyle_math::Quat;
+use condyle_model::limit::field::Lattice;
 
 /// No ball yet.
 pub(super) const NONE: u32 = u32::MAX;

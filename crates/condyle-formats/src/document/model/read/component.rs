@@ -27,6 +27,10 @@ struct LawReader {
     read: fn(&mut ModelReader<'_>, &Fields<'_>) -> Option<Law>,
 }
 
+/// The keys of a learned limit; `segment` and `reference` stand for a component that measures them.
+const FIELD: &[&str] =
+    &["segment", "reference", "file", "limit", "in_reference", "in_segment", "mirrored", "holes"];
+
 const READERS: &[LawReader] = &[
     reader("map", &["function", "functions", "in", "out"], |r, f| r.map(f)),
     reader("combine", &["function"], |r, f| {
@@ -46,6 +50,7 @@ const READERS: &[LawReader] = &[
     ),
     reader("ellipse", &["centre", "half_axes", "tilt", "in"], |r, f| r.ellipse(f)),
     reader("half_space", &["normal", "bound", "in"], |r, f| r.half_space(f)),
+    reader("field", FIELD, |r, f| r.field(f)),
     reader("relative_orientation", &[], |_, f| {
         let reference = f.get("reference").is_some();
         Some(Law::RelativeOrientation(RelativeOrientation { reference }))
@@ -103,7 +108,11 @@ impl ModelReader<'_> {
             let label = format!("{label}.{}", kind.name);
             let fields = self.table(&one.node, name.spot, label, &known);
             // Both to the end, so that every error is reported.
-            let (ports, law) = (self.ports(&fields, kind), (reader.read)(self, &fields));
+            let ports = match kind.name {
+                "field" => self.measured_for(draft, set, &name, &fields),
+                _ => self.ports(&fields, kind),
+            };
+            let law = (reader.read)(self, &fields);
             Some((law?, ports?))
         });
         match read {

@@ -6,6 +6,7 @@ mod cone;
 mod contact;
 mod coordinate;
 mod custom;
+mod field;
 mod limit;
 mod measured;
 mod posture;
@@ -20,10 +21,13 @@ use crate::document::model::draft::{CoordinateDraft, Draft, OutputDraft, Segment
 use crate::document::model::keys;
 use crate::document::model::mirror::Mirror;
 use crate::document::tree::{Entry, Node};
+use condyle_learn::limits::LearnedLimit;
 use condyle_model::component::{Reflection, Registry};
 use condyle_model::model::Facing;
 use condyle_model::{CoordinateKind, UpAxis};
+use std::collections::HashMap;
 use std::ops::{Deref, DerefMut};
+use std::sync::Arc;
 
 const FRAME: [&str; 4] = ["at", "turn", "order", "matrix"];
 
@@ -31,7 +35,9 @@ const FRAME: [&str; 4] = ["at", "turn", "order", "matrix"];
 pub(super) struct ModelReader<'s> {
     pub(super) reader: Reader<'s>,
     /// The laws that components of kind `custom` may name.
-    pub(super) laws: &'s Registry,
+    pub(super) laws: Registry,
+    /// The learned limits that were read, by their paths.
+    pub(super) fields: HashMap<String, Option<Arc<LearnedLimit>>>,
 }
 
 impl<'s> Deref for ModelReader<'s> {

@@ -1,11 +1,12 @@
 //! The inputs and parameters of components.
 
 use super::{Writer, frame, function, key, knots, line, number, numbers, several_of, text, vector};
-use condyle_math::Vec3;
+use crate::document::limit;
 use condyle_math::function::SimmSpline;
+use condyle_math::{Quat, Vec3};
 use condyle_model::component::{
-    Along, AngleNames, Arity, Centre, Component, Contact, Curve, Custom, JointCone, Law,
-    SurfaceAxis, Swinging,
+    Along, AngleNames, Arity, Centre, Component, Contact, Curve, Custom, FieldLimit, JointCone,
+    Law, SurfaceAxis, Swinging,
 };
 use condyle_model::limit::{ConePoint, Projection};
 use std::fmt::Write;
@@ -85,6 +86,7 @@ impl Writer<'_> {
                 line!(self, "normal = {}", numbers(c.normal()));
                 line!(self, "bound = {}", number(c.bound()));
             }
+            Law::Field(c) => self.field(component, c),
             Law::RelativeOrientation(_) => {}
             Law::RelativePosition(c) => {
                 line!(self, "point = {}", vector(c.point));
@@ -116,6 +118,28 @@ impl Writer<'_> {
             Law::Curve(c) => self.curve(c),
             Law::Custom(c) => self.custom(c),
         }
+    }
+
+    /// A learned limit with all that it was learned from.
+    fn field(&mut self, component: &Component, field: &FieldLimit) {
+        for (key, axes) in [("in_reference", field.in_reference), ("in_segment", field.in_segment)]
+        {
+            if axes != Quat::IDENTITY {
+                line!(self, "{key} = {}", numbers(&axes.to_array()));
+            }
+        }
+        if let Some(at) = field.mirrored {
+            line!(self, "mirrored = \"{}\"", AXES[at.axis()]);
+        }
+        if field.strict {
+            line!(self, "holes = \"closed\"");
+        }
+        let index = self.model.components().iter().position(|c| std::ptr::eq(c, component));
+        let name = index.and_then(|index| self.components.get(index)).unwrap_or(&component.name);
+        let (set, name) = (key(&self.set(component.joint_set.index())), key(name));
+        let table = format!("joint_set.{set}.component.{name}.field.limit");
+        line!(self, "\n[{table}]");
+        limit::named_keys(&mut self.out, &field.limit, &format!("{table}."));
     }
 
     fn path(&mut self, splines: &[SimmSpline; 3]) {

@@ -296,7 +296,7 @@ fn key(name: &str) -> String {
     if !name.is_empty() && name.chars().all(bare) { name.to_owned() } else { text(name) }
 }
 
-fn text(value: &str) -> String {
+pub(in crate::document) fn text(value: &str) -> String {
     let mut out = String::from("\"");
     for c in value.chars() {
         match c {
@@ -313,14 +313,14 @@ fn text(value: &str) -> String {
 }
 
 /// The shortest text that reads back to the same number.
-fn number(value: f64) -> String {
+pub(in crate::document) fn number(value: f64) -> String {
     if value == value.trunc() && value.abs() < 1e9 && (value != 0.0 || value.is_sign_positive()) {
         return format!("{value}");
     }
     format!("{value:?}")
 }
 
-fn numbers(values: &[f64]) -> String {
+pub(in crate::document) fn numbers(values: &[f64]) -> String {
     let list: Vec<String> = values.iter().map(|v| number(*v)).collect();
     format!("[{}]", list.join(", "))
 }

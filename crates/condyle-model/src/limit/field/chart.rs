@@ -11,9 +11,7 @@
 //! x = v/(1 + w), a unit is 4 in the middle and 2 at the half turns: the same number of nodes resolves people's joints,
 //! which are about the middle, worse by 30 %.
 
-use super::super::Cloud;
-use super::super::principal::principal;
-use condyle_math::{Mat3, Quat, Vec3};
+use condyle_math::{Quat, Vec3};
 
 /// Beyond the half turns the map goes on to w = -`OVERLAP`, so that values under both signs can be blended.
 pub(super) const OVERLAP: f64 = 0.05;
@@ -23,29 +21,31 @@ pub(super) fn reach() -> f64 {
     (2.0 * (1.0 + OVERLAP)).sqrt()
 }
 
-/// The axes of a cloud.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Chart {
+/// The axes in which a field is stored.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chart {
     left: Quat,
     right: Quat,
 }
 
 impl Chart {
-    pub(super) fn of(cloud: &Cloud) -> Self {
-        let back = cloud.reference().conjugate();
-        let mut moments = [[0.0; 3]; 3];
-        for (q, weight) in cloud.rotations().iter().zip(cloud.weights()) {
-            let to = (back * *q).log().to_array();
-            for i in 0..3 {
-                for j in 0..3 {
-                    moments[i][j] += weight * to[i] * to[j];
-                }
-            }
-        }
-        let (_, [a, b, _]) = principal(moments);
-        let (a, b) = (Vec3::from(a), Vec3::from(b));
-        let right = Quat::from_mat3(Mat3::from_columns(a, b, a.cross(b)));
-        Self { left: (right.conjugate() * back).normalized(), right }
+    /// The axes of a cloud about its reference rotation: unit quaternions `reference` and `axes`, which takes the
+    /// cloud's axes to the child's.
+    #[must_use]
+    pub fn new(reference: Quat, axes: Quat) -> Self {
+        Self { left: (axes.conjugate() * reference.conjugate()).normalized(), right: axes }
+    }
+
+    /// The same from what [`Chart::sides`] gave, without rounding.
+    #[must_use]
+    pub fn of_sides([left, right]: [Quat; 2]) -> Self {
+        Self { left, right }
+    }
+
+    /// A⁻¹ m⁻¹ and A: a rotation in the cloud's axes is left · p · right.
+    #[must_use]
+    pub fn sides(&self) -> [Quat; 2] {
+        [self.left, self.right]
     }
 
     /// A rotation in the cloud's axes, of length 1, of the two signs the one with w > 0, or with w = 0 and the
@@ -53,13 +53,15 @@ impl Chart {
     ///
     /// All operations are odd, so that `q` and `-q` give the same bits.
     #[inline]
-    pub(super) fn inward(&self, q: Quat) -> Quat {
+    #[must_use]
+    pub fn inward(&self, q: Quat) -> Quat {
         signed((self.left * q * self.right).normalized())
     }
 
     /// Back from the cloud's axes.
     #[inline]
-    pub(super) fn outward(&self, q: Quat) -> Quat {
+    #[must_use]
+    pub fn outward(&self, q: Quat) -> Quat {
         self.left.conjugate() * q * self.right.conjugate()
     }
 
@@ -70,6 +72,7 @@ impl Chart {
     }
 }
 
+/// Of both signs the one with w > 0, or with w = 0 and the first other component above 0.
 #[inline]
 pub(super) fn signed(q: Quat) -> Quat {
     let first = [q.w, q.x, q.y, q.z].into_iter().find(|c| *c != 0.0);

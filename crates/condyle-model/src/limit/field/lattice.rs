@@ -5,34 +5,41 @@ use condyle_math::Quat;
 
 /// Equally spaced nodes in a cube about the map.
 #[derive(Clone, Debug)]
-pub(super) struct Lattice {
+pub struct Lattice {
     /// Nodes along an edge.
-    pub(super) edge: usize,
+    pub edge: usize,
     /// Units of the map between two nodes.
-    pub(super) step: f64,
+    pub step: f64,
     origin: f64,
     per_step: f64,
 }
 
 impl Lattice {
-    pub(super) fn new(edge: usize) -> Self {
+    /// Nodes about all rotations, so many along an edge: at least 8.
+    #[must_use]
+    pub fn new(edge: usize) -> Self {
         // Of the nodes along an edge, two at either end are beyond the reach: cubic splines use one, their
         // coefficients another.
         let step = 2.0 * reach() / (edge as f64 - 6.1);
         Self { edge, step, origin: -reach() - 2.05 * step, per_step: 1.0 / step }
     }
 
-    pub(super) fn len(&self) -> usize {
+    /// How many nodes there are.
+    #[expect(clippy::len_without_is_empty, reason = "there are always nodes")]
+    #[must_use]
+    pub fn len(&self) -> usize {
         self.edge * self.edge * self.edge
     }
 
     /// The angle between neighbouring nodes in the middle, in radians.
-    pub(super) fn angle(&self) -> f64 {
+    #[must_use]
+    pub fn angle(&self) -> f64 {
         2.0 * self.step
     }
 
     /// Quaternions of the nodes, `None` where none is asked for a value.
-    pub(super) fn nodes(&self) -> Vec<Option<Quat>> {
+    #[must_use]
+    pub fn nodes(&self) -> Vec<Option<Quat>> {
         let used = reach() + 3.5 * self.step;
         let place = |i: usize| self.origin + self.step * i as f64;
         let mut nodes = Vec::with_capacity(self.len());
@@ -49,7 +56,8 @@ impl Lattice {
     }
 
     /// The volume about each node in rad³; that of all rotations is 8π².
-    pub(super) fn volume(&self, q: Quat) -> f64 {
+    #[must_use]
+    pub fn volume(&self, q: Quat) -> f64 {
         // dV = 8 cos(θ/4) dx³, up to the half turns, |x| = √2.
         let square = 2.0 * (1.0 - q.w);
         let within = (2f64.sqrt() - square.sqrt()) / self.step + 0.5;
@@ -58,7 +66,8 @@ impl Lattice {
 
     /// The eight nodes about a quaternion; its w must be above -`OVERLAP`.
     #[inline]
-    pub(super) fn corners(&self, q: Quat) -> [usize; 8] {
+    #[must_use]
+    pub fn corners(&self, q: Quat) -> [usize; 8] {
         let ([i, j, k], _) = self.cell(mapped(q));
         let edge = self.edge;
         let first = (k * edge + j) * edge + i;
@@ -73,6 +82,46 @@ impl Lattice {
             above + edge,
             above + edge + 1,
         ]
+    }
+
+    /// The eight of every other node about a quaternion, as [`super::Boundary`] counts them.
+    #[inline]
+    pub(super) fn every_other(&self, q: Quat) -> [usize; 8] {
+        let (cell, _) = self.cell(mapped(q));
+        let [i, j, k] = cell.map(|c| c / 2);
+        let half = self.edge.div_ceil(2);
+        let first = (k * half + j) * half + i;
+        let above = first + half * half;
+        let row = |start| [start, start + 1, start + half, start + half + 1];
+        let ([a, b, c, d], [e, f, g, h]) = (row(first), row(above));
+        [a, b, c, d, e, f, g, h]
+    }
+
+    /// The first nodes of the cells whose coefficients make the value at a rotation with w ≥ 0.
+    #[inline]
+    pub(super) fn cells(&self, q: Quat) -> impl Iterator<Item = usize> + use<> {
+        let first = |q: Quat| {
+            let ([i, j, k], _) = self.cell(mapped(q));
+            (k * self.edge + j) * self.edge + i
+        };
+        [Some(first(q)), (q.w < OVERLAP).then(|| first(-q))].into_iter().flatten()
+    }
+
+    /// For each cell, by its first node, whether any of the coefficients that make its values differ.
+    pub(super) fn differing(&self, one: &[f32], other: &[f32]) -> Vec<bool> {
+        let mut differ: Vec<bool> =
+            one.iter().zip(other).map(|(a, b)| a.to_bits() != b.to_bits()).collect();
+        for stride in [1, self.edge, self.edge * self.edge] {
+            let from = differ.clone();
+            for (node, differ) in differ.iter_mut().enumerate() {
+                let at = |n: usize| from.get(n).copied().unwrap_or(false);
+                *differ = at(node.wrapping_sub(stride))
+                    || at(node)
+                    || at(node + stride)
+                    || at(node + 2 * stride);
+            }
+        }
+        differ
     }
 
     /// The cell of a place, such that a cubic spline has all its coefficients, and the place in it.
@@ -91,7 +140,8 @@ impl Lattice {
 
     /// Coefficients of the cubic spline that takes given values near the nodes: exact for polynomials
     /// of third degree, elsewhere wrong by the fourth power of the step.
-    pub(super) fn coefficients(&self, values: &[f32]) -> Vec<f32> {
+    #[must_use]
+    pub fn coefficients(&self, values: &[f32]) -> Vec<f32> {
         let mut from = values.to_vec();
         for stride in [1, self.edge, self.edge * self.edge] {
             let mut to = from.clone();
@@ -197,7 +247,7 @@ impl Lattice {
     }
 
     /// The nodes about a rotation, under either sign where it is in the map twice.
-    pub(super) fn around(&self, q: Quat) -> impl Iterator<Item = usize> + use<> {
+    pub fn around(&self, q: Quat) -> impl Iterator<Item = usize> + use<> {
         let q = chart::signed(q);
         self.corners(q).into_iter().chain(self.twins(q).into_iter().flatten())
     }

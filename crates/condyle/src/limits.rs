@@ -1,0 +1,34 @@
+//! Limits learned from rotations: learned, opened, asked, saved.
+//!
+//! ```
+//! use condyle::formats::document::limit;
+//! use condyle::limits::{About, Cloud, Settings, State, learn};
+//! use condyle::math::{Quat, Vec3};
+//! // A joint of which all turns by up to 50 degrees about two axes were seen.
+//! let steps = |i: i32| (i - 7) as f64 * 7f64.to_radians();
+//! let take: Vec<Quat> = (0..15 * 15 * 3)
+//!     .map(|n| Vec3::new(steps(n % 15), 0.05 * f64::from(n / 225 - 1), steps(n / 15 % 15)))
+//!     .filter(|turn| turn.norm() < 50f64.to_radians())
+//!     .map(Quat::exp)
+//!     .collect();
+//! let cloud = Cloud::gather(&[&take], 2f64.to_radians())?;
+//! let about = About { child: "hand".into(), reference: Some("forearm".into()), ..About::default() };
+//! let learned = learn(&cloud, &Settings { nodes: 48, ..Settings::default() }, about)?;
+//! let far = learned.field().answer(Quat::exp(Vec3::X * 80f64.to_radians()));
+//! assert_eq!(far.state, State::Invalid);
+//! assert!((far.distance.to_degrees() + 30.0).abs() < 6.0);
+//! // Saved and read again, it answers the same.
+//! let text = limit::write(&learned);
+//! let again = limit::read(&text, &mut |_| Err("it stands alone".into()))?.value;
+//! assert_eq!(again.field().answer(Quat::exp(Vec3::X * 80f64.to_radians())), far);
+//! # Ok::<(), condyle::Error>(())
+//! ```
+//!
+//! [`open::limit`](crate::open::limit) opens a file, [`encode::limit`](crate::encode::limit) gives the bytes of one. The field
+//! itself is made when [`LearnedLimit::field`] is first called, which for 96 nodes takes about a second.
+
+pub use condyle_learn::limits::field::{
+    About, Answer, Evidence, Field, Ground, Hole, Known, Learned, LearnedLimit, Settings, State,
+    limit as learn,
+};
+pub use condyle_learn::limits::{Cloud, Gathered, SPACING, herda2003};
