@@ -115,7 +115,7 @@ fn no_reader_takes_more_than_its_bound() {
     assert!(findings.is_empty(), "{findings:#?}");
     let read = FORMATS.iter().filter(|format| !format.reads.is_empty() && format.id != Id::Fbx);
     if paths.len() > seeds {
-        for format in read.filter(|format| !matches!(format.id, Id::Keypoints)) {
+        for format in read.filter(|format| !matches!(format.name, "jsonl" | "npz")) {
             assert!(told.contains_key(format.name), "no file of {}", format.name);
         }
     }
