@@ -349,7 +349,7 @@ fn what_is_refused_says_why() {
 
 #[test]
 fn an_archive_that_inflates_to_too_much_is_refused() {
-    // 60 MB of zeros in some kilobytes: more than three times the archive and 28 MB.
+    // 60 MB of zeros in some kilobytes: more than three times the archive and 24 MB.
     let zeros = Npy::new(&[100_000, 72], |_| 0.0);
     let bytes = Npz::default().with("poses", zeros).deflated();
     assert!(bytes.len() < 100_000);

@@ -11,7 +11,7 @@ const MOST_ENTRIES: usize = 4096;
 /// All entries together are inflated to at most so many times the archive's size ...
 const INFLATED_PER_BYTE: usize = 3;
 /// ... and this many bytes.
-const INFLATED_BASE: usize = 28 << 20;
+const INFLATED_BASE: usize = 24 << 20;
 /// The longest comment at the end.
 const LONGEST_COMMENT: usize = 65_535;
 

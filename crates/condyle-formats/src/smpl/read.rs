@@ -13,9 +13,9 @@ use std::f64::consts::FRAC_PI_2;
 /// Taken where a file does not say how many frames are in a second.
 const USUAL_RATE: f64 = 30.0;
 /// A motion takes at most so many times the file's size ...
-const MOTION_PER_BYTE: usize = 6;
-/// ... and this many bytes.
-const MOTION_BASE: usize = 48 << 20;
+const MOTION_PER_BYTE: usize = 5;
+/// ... and this many bytes: with what is inflated no more than 8 times the file and 64 MB.
+const MOTION_BASE: usize = 36 << 20;
 /// At most so many frames are looked at for the axis that points up.
 const LOOKED_AT: usize = 301;
 /// The pelvis is upright where its own y points along an axis on average by that much.

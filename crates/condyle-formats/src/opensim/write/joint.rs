@@ -86,7 +86,7 @@ fn coordinate(out: &mut String, coordinate: &Coordinate) {
         "<Coordinate name=\"{}\"><default_value>{}</default_value><range>{lower} {upper}</range>\
          <clamped>{}</clamped><locked>{}</locked></Coordinate>",
         coordinate.name,
-        numbers([coordinate.default]),
+        numbers([range.nearest(coordinate.default)]),
         range.enforced && (range.lower.is_some() || range.upper.is_some()),
         coordinate.locked,
     );

@@ -49,7 +49,8 @@ pub fn write(model: &Model) -> Read<String> {
 pub fn written(model: &Model) -> Written {
     let mut tree = build(model, Choice::default());
     fit(model, &mut tree);
-    let remarks = std::mem::take(&mut tree.remarks);
+    let mut remarks = std::mem::take(&mut tree.remarks);
+    remarks.extend(defaults_moved(model));
     let mut file = File::new(model, tree, remarks);
     let text = file.text();
     let File { tree, coordinates, bodies, remarks, .. } = file;
@@ -62,6 +63,18 @@ pub fn written(model: &Model) -> Written {
         bodies,
         remarks,
     }
+}
+
+/// What is said of defaults that OpenSim refuses: those outside a range that holds.
+fn defaults_moved(model: &Model) -> Option<Diagnostic> {
+    let moved = model.coordinate_ids().filter(|&id| {
+        let (range, default) = (model.coordinate(id).range, model.value(&model.defaults(), id));
+        range.nearest(default) != default
+    });
+    let names: Vec<String> = moved.map(|id| model.coordinate_key(id)).collect();
+    let message = format!("outside their ranges are the defaults of {}", listed(&names));
+    let said = Diagnostic::warning("osim/default", message);
+    (!names.is_empty()).then(|| said.with_help("OpenSim refuses that: they are at the nearest end"))
 }
 
 /// One joint of the file with the body that it moves.
@@ -309,4 +322,23 @@ fn offset(out: &mut String, name: &str, base: &str, frame: &Affine) {
 fn named(name: &str) -> String {
     let refused = |c: char| c.is_whitespace() || matches!(c, '\\' | '/' | '*' | '+');
     escaped(&name.chars().map(|c| if refused(c) { '_' } else { c }).collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use condyle_model::{ModelBuilder, Range};
+
+    /// OpenSim refuses a file whose default is outside a clamped range.
+    #[test]
+    fn a_default_outside_its_range_is_moved_to_its_end_and_said() {
+        let mut b = ModelBuilder::new("arm");
+        let forearm = b.segment("forearm", None);
+        let (_, flexion) = b.hinge("elbow", forearm, "flexion", condyle_math::Vec3::Z);
+        let coordinate = b.coordinate_mut(flexion);
+        coordinate.range = Range::new(0.5, 2.5);
+        coordinate.default = [0.25, 0.0, 0.0, 0.0];
+        let read = super::write(&b.build().unwrap());
+        assert!(read.value.contains("<default_value>0.5</default_value>"), "{}", read.value);
+        assert!(read.warnings.iter().any(|w| w.code == "osim/default"), "{:?}", read.warnings);
+    }
 }
