@@ -21,6 +21,7 @@ mod ball;
 mod block;
 mod curve;
 mod form;
+mod level;
 mod mesh;
 mod plate;
 mod rib;

@@ -100,6 +100,22 @@ pub fn scene(
     Ok(Read { value: glb::write(&value)?, warnings })
 }
 
+/// A surface alone as a scene, a metre for each unit.
+///
+/// # Errors
+/// What the writer finds wrong.
+#[cfg(feature = "glb")]
+pub fn surface(mesh: condyle_mesh::Mesh, name: &str) -> Result<Vec<u8>, Error> {
+    let node = glb::SceneNode { name: name.to_owned(), ..glb::SceneNode::default() };
+    let surface = glb::Surface { mesh, ..glb::Surface::default() };
+    glb::write(&glb::Scene {
+        name: name.to_owned(),
+        nodes: vec![node],
+        surfaces: vec![surface],
+        ..glb::Scene::default()
+    })
+}
+
 /// A model in the text of another program, with what was fitted, dropped or turned into something else.
 ///
 /// # Errors

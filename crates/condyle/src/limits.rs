@@ -32,3 +32,37 @@ pub use condyle_learn::limits::field::{
     limit as learn,
 };
 pub use condyle_learn::limits::{Cloud, Gathered, SPACING, herda2003};
+
+use condyle_math::{Quat, Vec3};
+use condyle_mesh::Mesh;
+
+/// Cells along each axis of a boundary that is drawn: 2.5 degrees each in the middle.
+pub const CELLS: usize = 96;
+
+/// The boundary of what a limit allows, in quaternion space: a rotation by θ about the unit vector u is at u·sin(θ/2), half turns
+/// on the sphere of radius 1, where the surface is closed. Closed, facing outward; holes are bounded too.
+///
+/// `distance` is the signed distance to the boundary, positive inside, such as [`Field::distance`].
+///
+/// ```
+/// use condyle::limits::boundary;
+/// use condyle::math::Quat;
+/// // A ball of 50 degrees about rest.
+/// let reach = 50f64.to_radians();
+/// let mesh = boundary(&|q: Quat| reach - q.angle_to(Quat::IDENTITY), 48);
+/// let radius = (reach / 2.0).sin();
+/// assert!(mesh.positions.iter().all(|p| (p.norm() - radius).abs() < 1e-3));
+/// ```
+#[must_use]
+pub fn boundary(distance: &dyn Fn(Quat) -> f64, cells: usize) -> Mesh {
+    let value = |p: Vec3| {
+        let size = p.norm();
+        if size >= 1.0 {
+            return 1.0 - size;
+        }
+        let w = (1.0 - size * size).sqrt();
+        distance(Quat { x: p.x, y: p.y, z: p.z, w }).min(1.0 - size)
+    };
+    // A little more than the sphere of half turns, so that nothing reaches the faces.
+    Mesh::of_level(&value, 1.0 + 2.0 / cells.max(1) as f64, cells)
+}

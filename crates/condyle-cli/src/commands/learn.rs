@@ -8,7 +8,9 @@ use condyle::formats::document::limit;
 use condyle::learn::limits::herda2003::{LearnedSpheres, Options};
 use condyle::learn::limits::{LeftOut, Settings, percentile};
 use condyle::learning::{self, How, LearnedFrom, Take, Wanted};
+use condyle::math::Quat;
 use condyle::open::{self, Cause, OpenError};
+use condyle::{encode, limits};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -80,6 +82,9 @@ struct Limits {
     /// What became of the recordings and what takes tell that were left out, in JSON.
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
+    /// The boundary as a surface (.glb) in quaternion space: a turn by θ about u is at u·sin(θ/2).
+    #[arg(long, value_name = "M.glb")]
+    mesh: Option<PathBuf>,
 }
 
 /// An angle in degrees, 0 to 57, in radians.
@@ -115,8 +120,11 @@ impl Limits {
             .chain(&self.model)
             .map(PathBuf::as_path)
             .collect();
-        let outputs: Vec<&Path> =
-            std::iter::once(&self.output).chain(&self.report).map(PathBuf::as_path).collect();
+        let outputs: Vec<&Path> = std::iter::once(&self.output)
+            .chain(&self.report)
+            .chain(&self.mesh)
+            .map(PathBuf::as_path)
+            .collect();
         output::check_distinct(&inputs, &outputs)?;
         let wanted = self.wanted()?;
         let mut takes = vec![];
@@ -133,6 +141,8 @@ impl Limits {
                 warn_about(&self.recordings[0], &learned.warnings);
                 let seconds = started.elapsed().as_secs_f64();
                 let report = closing_report(&takes, &learned, seconds);
+                let field = learned.limit.field();
+                self.drawn(&|q| field.distance(q), name)?;
                 (limit::write(&learned.limit), closing_text(&takes, &learned), report)
             }
             Method::Herda2003 => {
@@ -141,6 +151,7 @@ impl Limits {
                 warn_about(&self.recordings[0], &warnings);
                 let seconds = started.elapsed().as_secs_f64();
                 let report = spheres_report(&takes, &spheres, seconds);
+                self.drawn(&|q| spheres.limit.value(q) - 1.0, name)?;
                 (limit::write_spheres(&spheres), spheres_text(&takes, &spheres), report)
             }
         };
@@ -152,6 +163,20 @@ impl Limits {
             output::print(text.as_bytes())?;
         }
         Ok(Outcome::Done)
+    }
+
+    /// The boundary as a scene, where it is asked for.
+    fn drawn(&self, distance: &dyn Fn(Quat) -> f64, name: &str) -> Result<(), Failure> {
+        let Some(path) = &self.mesh else { return Ok(()) };
+        if open::ending(path) != "glb" {
+            let path = path.display();
+            return Err(Failure::new(format!(
+                "{path}: a surface is written as .glb: end it in that"
+            )));
+        }
+        let mesh = limits::boundary(distance, limits::CELLS);
+        let name = if name.is_empty() { "limit" } else { name };
+        output::write(path, &encode::surface(mesh, name)?)
     }
 
     fn wanted(&self) -> Result<Wanted, Failure> {
