@@ -10,7 +10,8 @@
 //! ```
 //!
 //! as if p of the volume were missed all around; for independent samples it is what leaving single samples out
-//! gives. It is at least the spacing to which frames were thinned, so that frames between samples are inside, and at
+//! gives. It is no thicker than what holds 95 % of the left-out
+//! rotations, at least the spacing to which frames were thinned, so that frames between samples are inside, and at
 //! least so thick that half of the left-out rotations are: of turns about one or two axes V is 0. What lies farther from all samples than 95 % of the left-out rotations inside C did is a hole.
 
 use super::{Cloud, Settings, learn};
@@ -121,7 +122,9 @@ pub fn left_out(takes: &[&[Quat]], spacing: f64, settings: &Settings) -> Result<
     let gap = if learned.surface > 0.0 { outside * volume / learned.surface } else { 0.0 };
     // Distances rise, so that half of them are at least the middle one.
     let half = -percentile(&distances, 0.5);
-    let gap = gap.max(half).max(spacing);
+    // Who moves along the boundary shows more of it than of the inside: p is then no share of a volume, and the layer no
+    // thicker than what holds nearly all.
+    let gap = gap.min(-percentile(&distances, 0.05)).max(half).max(spacing);
     let [size, _] = settings.hole.or(Settings::default().hole).unwrap_or([2.5, 2.0]);
     Ok(LeftOut {
         parts: parts.len(),

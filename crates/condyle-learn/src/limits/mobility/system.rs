@@ -28,7 +28,7 @@ pub struct InSystem {
 /// let inside = |q: Quat| q.angle_to(Quat::IDENTITY) < most;
 /// let expected = (most - most.sin()) / std::f64::consts::PI;
 /// for order in ["yxy", "zxy", "xyz"] {
-///     let found = in_system(&inside, order.parse::<EulerOrder>().unwrap(), 90);
+///     let found = in_system(&inside, order.parse::<EulerOrder>().unwrap(), 180);
 ///     assert!((found.share / expected - 1.0).abs() < 0.01, "{found:?}");
 /// }
 /// ```
