@@ -159,7 +159,11 @@ fn rotations() -> String {
 fn what_nobody_was_recorded_in_is_left_with_strict_only() {
     let folder = Folder::new("constrain-strict");
     folder.write("q.csv", rotations());
-    folder.condyle(&["learn", "limits", "q.csv", "-o", "limit.toml"]).expect(0);
+    let learn = ["learn", "limits", "q.csv", "-o", "limit.toml", "--mesh", "limit.glb"];
+    folder.condyle(&learn).expect(0);
+    // A surface is no skeleton, but glTF that can be read.
+    let surface = std::fs::read(folder.path().join("limit.glb")).expect("a surface");
+    assert!(surface.starts_with(b"glTF") && surface.len() > 100_000);
     folder.write(
         "arm.toml",
         "condyle = 1\nkind = \"model\"\n[segment.arm]\n[joint_set.shoulder.coordinate.swing]\n\
