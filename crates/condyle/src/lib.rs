@@ -267,8 +267,8 @@
 //!
 //! The last two rows are features: without them nothing that reads a file is compiled.
 
-#[cfg(feature = "formats")]
 pub mod constraining;
+#[cfg(feature = "formats")]
 pub mod encode;
 mod figure;
 #[cfg(feature = "document")]

@@ -370,10 +370,11 @@ fn included(from: &Path, name: &str) -> Result<String, String> {
     {
         return Ok(text.to_owned());
     }
-    // A skeleton of another format, as the text that says the same.
+    // A document may include a skeleton of another format, as the text that says the same.
     #[cfg(feature = "document")]
-    if Format::of_ending(&ending(&path))
-        .is_some_and(|f| f.id != Id::Document && f.reads.contains(&ContentKind::Model))
+    if Format::of_ending(&ending(from)).is_none_or(|f| f.id == Id::Document)
+        && Format::of_ending(&ending(&path))
+            .is_some_and(|f| f.id != Id::Document && f.reads.contains(&ContentKind::Model))
     {
         let model = model(&path).map_err(|error| error.to_string())?.value;
         return Ok(condyle_formats::document::write(&model));
