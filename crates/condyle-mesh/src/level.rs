@@ -10,7 +10,9 @@ use std::collections::HashMap;
 const TETRAHEDRA: [[usize; 4]; 6] =
     [[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]];
 /// A corner of the surface is no nearer to a corner of the grid than this share of an edge, so that no triangle is without area.
-const APART: f64 = 0.02;
+const APART: f64 = 1e-3;
+/// So many times a corner is brought nearer to the zero on its edge.
+const STEPS: usize = 3;
 
 impl Mesh {
     /// The boundary of where `value` is positive in the cube from -`half` to `half` along each axis, of so many cells
@@ -45,8 +47,13 @@ impl Mesh {
                 found => found,
             })
             .collect();
-        let mut surface =
-            Surface { values: &values, at: &at, cuts: HashMap::new(), mesh: Self::default() };
+        let mut surface = Surface {
+            value,
+            values: &values,
+            at: &at,
+            cuts: HashMap::new(),
+            mesh: Self::default(),
+        };
         for k in 0..cells {
             for j in 0..cells {
                 for i in 0..cells {
@@ -74,6 +81,7 @@ impl Mesh {
 }
 
 struct Surface<'a> {
+    value: &'a dyn Fn(Vec3) -> f64,
     values: &'a [f64],
     at: &'a dyn Fn(usize) -> Vec3,
     /// The corner of the surface on an edge of the grid, by the ends of that.
@@ -116,9 +124,21 @@ impl Surface<'_> {
         if let Some(&known) = self.cuts.get(&(inner.min(outer), inner.max(outer))) {
             return known;
         }
-        let (from, to) = (self.values[inner], self.values[outer]);
-        let share = (from / (from - to)).clamp(APART, 1.0 - APART);
         let (a, b) = ((self.at)(inner), (self.at)(outer));
+        // The line between the values at the ends, then between those nearer to the zero (Illinois).
+        let (mut low, mut from) = (0.0, self.values[inner]);
+        let (mut high, mut to) = (1.0, self.values[outer]);
+        let mut share = from / (from - to);
+        for _ in 0..STEPS {
+            let found = (self.value)(a + (b - a) * share);
+            if found > 0.0 {
+                (low, from, to) = (share, found, 0.5 * to);
+            } else {
+                (high, to, from) = (share, found.min(-f64::MIN_POSITIVE), 0.5 * from);
+            }
+            share = low + (high - low) * from / (from - to);
+        }
+        let share = share.clamp(APART, 1.0 - APART);
         let corner = self.mesh.positions.len() as u32;
         self.mesh.positions.push(a + (b - a) * share);
         self.cuts.insert((inner.min(outer), inner.max(outer)), corner);

@@ -51,7 +51,7 @@ pub const CELLS: usize = 96;
 /// let reach = 50f64.to_radians();
 /// let mesh = boundary(&|q: Quat| reach - q.angle_to(Quat::IDENTITY), 48);
 /// let radius = (reach / 2.0).sin();
-/// assert!(mesh.positions.iter().all(|p| (p.norm() - radius).abs() < 3e-3));
+/// assert!(mesh.positions.iter().all(|p| (p.norm() - radius).abs() < 2e-4));
 /// ```
 #[must_use]
 pub fn boundary(distance: &dyn Fn(Quat) -> f64, cells: usize) -> Mesh {

@@ -131,6 +131,12 @@ fn a_foreign_skeleton_comes_back_with_only_its_bad_joint_changed() {
         (&numbers[..6], &numbers[7..]),
         (&[1.25, 90.0, 0.0, 10.0, 0.0, 0.0][..], &[0.0, 5.0][..])
     );
+    // The same with the skeleton of a certain file.
+    let named = head.replace("\"skeleton\"", "\"figure.bvh\"");
+    folder.write("named.toml", format!("{named}joint_set.Arm.coordinate.rz.range = [-30, 45]\n"));
+    let asked = ["constrain", "named.toml", "figure.bvh", "-o", "again.bvh", "--length-unit", "cm"];
+    folder.condyle(&asked).expect(0);
+    assert_eq!(folder.read("again.bvh"), text);
     // A joint that the skeleton does not have is said with its place.
     folder.write("wrong.toml", format!("{head}joint_set.Arn.coordinate.rz.range = [-30, 45]\n"));
     let refused = folder.condyle(&["constrain", "wrong.toml", "figure.bvh"]).refused();

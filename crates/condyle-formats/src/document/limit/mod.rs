@@ -108,8 +108,8 @@ struct Samples {
 }
 
 impl Reader<'_> {
-    /// The limit whose keys are in a table.
-    pub(super) fn limit(&mut self, top: &Fields<'_>, name: String) -> Option<LearnedLimit> {
+    /// What people want to know of a limit, but for the names of its takes.
+    fn about(&mut self, top: &Fields<'_>, name: String) -> Option<About> {
         let child = self.required(top, "child", "the segment whose rotation is limited");
         let child = child.and_then(|node| self.text(node, "child"));
         let said = |reader: &mut Self, key| {
@@ -119,6 +119,13 @@ impl Reader<'_> {
         let reference = said(self, "reference");
         let [source, population, frames] =
             ["source", "population", "frames"].map(|key| said(self, key).unwrap_or_default());
+        let child = child?.text;
+        Some(About { name, child, reference, source, population, frames, takes: vec![] })
+    }
+
+    /// The limit whose keys are in a table.
+    pub(super) fn limit(&mut self, top: &Fields<'_>, name: String) -> Option<LearnedLimit> {
+        let about = self.about(top, name);
         let learning = ["method", "nodes", "radii", "layer", "hole"];
         let settings = match self.table_of(top, "learning", &learning) {
             Some(fields) => self.settings(&fields),
@@ -136,8 +143,7 @@ impl Reader<'_> {
         let samples = self.table_of(top, "samples", &keys)?;
         let Samples { rotations, takes, names, thinned, chart } = self.samples(&samples)?;
         let (known, learned) = learned.unzip();
-        let about =
-            About { name, child: child?.text, reference, source, population, frames, takes: names };
+        let about = About { takes: names, ..about? };
         let settings = settings?;
         let ground = match chart {
             Some(chart) => {

@@ -97,15 +97,7 @@ pub fn read_spheres(
 
 impl Reader<'_> {
     fn spheres(&mut self, top: &Fields<'_>, name: String) -> Option<LearnedSpheres> {
-        let child = self.required(top, "child", "the segment whose rotation is limited");
-        let child = child.and_then(|node| self.text(node, "child"));
-        let said = |reader: &mut Self, key| {
-            let node = top.get(key)?;
-            reader.text(node, key).map(|said| said.text)
-        };
-        let reference = said(self, "reference");
-        let [source, population, frames] =
-            ["source", "population", "frames"].map(|key| said(self, key).unwrap_or_default());
+        let about = self.about(top, name);
         if let Some(fields) = self.table_of(top, "learning", &["method"]) {
             self.word(&fields, "method", &[("herda2003", ())])?;
         }
@@ -120,8 +112,7 @@ impl Reader<'_> {
         let samples =
             self.table_of(top, "samples", &["packed", "rotations", "takes", "names", "thinned"])?;
         let Samples { rotations, takes, names, thinned, .. } = self.samples(&samples)?;
-        let about =
-            About { name, child: child?.text, reference, source, population, frames, takes: names };
+        let about = About { takes: names, ..about? };
         Some(LearnedSpheres { about, limit: limit?, samples: rotations, takes, thinned })
     }
 
