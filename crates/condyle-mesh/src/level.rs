@@ -12,7 +12,7 @@ const TETRAHEDRA: [[usize; 4]; 6] =
 /// A corner of the surface is no nearer to a corner of the grid than this share of an edge, so that no triangle is without area.
 const APART: f64 = 1e-3;
 /// So many times a corner is brought nearer to the zero on its edge.
-const STEPS: usize = 3;
+const STEPS: usize = 5;
 
 impl Mesh {
     /// The boundary of where `value` is positive in the cube from -`half` to `half` along each axis, of so many cells
