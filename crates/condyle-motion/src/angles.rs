@@ -4,7 +4,7 @@ use crate::columns::cells;
 use crate::{AngleUnit, Table};
 use condyle_diagnostics::{Diagnostic, Error};
 use condyle_model::{CoordinateKind, Model};
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// How a unit is stated.
 const HELP: &str = "state it: `--angles deg` or `--angles rad`, or a line `inDegrees=yes` or `inDegrees=no` in the header";
@@ -31,7 +31,9 @@ impl Table {
     /// A ≤ π              radians, unless some were far beyond the ranges: then it cannot be told
     /// ```
     ///
-    /// A CSV is in radians up to 3π, as this program writes it, which is a note.
+    /// A CSV is in radians up to 3π, as this program writes it, which is a note. There only angles whose ranges are
+    /// narrower than a turn are asked, if there are any that are not 0: what turns on without an end exceeds 3π in
+    /// radians too.
     ///
     /// Joints turn by less than π, so that in radians more than 3π (540°) does not occur, and between them
     /// are turns of the whole body in radians as well as small motions in degrees. Of the smallest
@@ -75,7 +77,10 @@ impl Table {
         if !rule && self.angle_unit != AngleUnit::Unstated {
             return Ok(vec![]);
         }
-        let Some(largest) = self.largest_angle(model) else { return Ok(vec![]) };
+        let with_ends = if rule { self.largest_angle(model, TAU) } else { None };
+        let Some(largest) = with_ends.or_else(|| self.largest_angle(model, f64::INFINITY)) else {
+            return Ok(vec![]);
+        };
         let Largest { size, column, time, beyond } = largest;
         let column = &self.columns[column];
         let what = format!(
@@ -100,9 +105,10 @@ impl Table {
         Ok(vec![Diagnostic::warning("motion/angle-unit", message).with_help(HELP)])
     }
 
-    fn largest_angle(&self, model: Option<&Model>) -> Option<Largest> {
+    /// The largest of the angles whose ranges are not wider than `widest`; `None` if all are 0.
+    fn largest_angle(&self, model: Option<&Model>, widest: f64) -> Option<Largest> {
         // Columns of angles, each with its range.
-        let angles: Vec<(usize, [f64; 2])> = match model {
+        let mut angles: Vec<(usize, [f64; 2])> = match model {
             Some(model) => {
                 let turns = cells(model, self).into_iter().filter_map(|cell| {
                     let coordinate = model.coordinate(cell.coordinate);
@@ -121,6 +127,7 @@ impl Table {
                 angles.map(|(column, _)| (column, [f64::NEG_INFINITY, f64::INFINITY])).collect()
             }
         };
+        angles.retain(|(_, [low, high])| high - low <= widest);
         let mut largest: Option<Largest> = None;
         let mut beyond = false;
         for (row, &time) in self.times.iter().enumerate() {
@@ -216,6 +223,28 @@ mod tests {
             let mut table = table(&["angle", "total"], &[angle, 500.0]);
             assert_eq!(table.settle_angles(Some(&model), None).is_ok(), unit.is_some(), "{angle}");
             assert_eq!(table.angle_unit, unit.unwrap_or_default(), "{angle}");
+        }
+    }
+
+    #[test]
+    fn what_turns_without_an_end_tells_no_unit_of_a_csv() {
+        let mut b = ModelBuilder::new("dancer");
+        let body = b.segment("body", None);
+        let shank = b.segment("shank", Some(body));
+        b.hinge("ground", body, "heading", Vec3::Y);
+        let (_, knee) = b.hinge("knee", shank, "angle", Vec3::Z);
+        b.coordinate_mut(knee).range = Range::new(-2.0, 0.2);
+        let model = b.build().unwrap();
+        // Two turns, 4π, beside a knee bent by 1.2 rad, or by 69 degrees; a knee that stays at 0 tells nothing.
+        for (angle, unit) in
+            [(-1.2, AngleUnit::Radians), (-69.0, AngleUnit::Degrees), (0.0, AngleUnit::Degrees)]
+        {
+            let mut csv = Table {
+                angle_unit: AngleUnit::RadiansAsRule,
+                ..table(&["heading", "angle"], &[4.0 * PI, angle])
+            };
+            assert_eq!(csv.settle_angles(Some(&model), None).unwrap().len(), 1);
+            assert_eq!(csv.angle_unit, unit, "{angle}");
         }
     }
 }
