@@ -15,6 +15,7 @@
 //! below `tolerance · F`, the last step is still tried, so that directions in which F is nearly
 //! flat converge to the minimum of the caller's prior.
 
+use crate::curvature::RowCurvature;
 use crate::elimination::Elimination;
 use crate::quadratic::{QuadraticProgram, Status, Workspace};
 
@@ -119,6 +120,7 @@ pub struct Solver {
     equality_steps: Vec<f64>,
     equality_values: Vec<f64>,
     inequality_values: Vec<f64>,
+    curvature: RowCurvature,
 }
 
 /// The largest half-width of the trust region, in units of `scale`.
@@ -155,6 +157,7 @@ impl Solver {
             equality_steps: vec![0.0; equalities],
             equality_values: vec![0.0; equalities],
             inequality_values: vec![0.0; inequalities],
+            curvature: RowCurvature::new(n, inequalities),
         }
     }
 
@@ -190,6 +193,7 @@ impl Solver {
         let mut fresh = true;
         let mut near = false;
         let mut polished = false;
+        self.curvature.forget();
         while summary.iterations < options.iterations {
             summary.iterations += 1;
             if fresh {
@@ -233,6 +237,8 @@ impl Solver {
                 // Armijo condition with c₁ = 1e-4; the ratio of gain to prediction sets the region.
                 problem.accept();
                 fresh = true;
+                let multipliers = self.program.solution().inequality_multipliers();
+                self.curvature.leave(&self.step, &self.local.inequality_rows, multipliers);
                 objective = trial;
                 std::mem::swap(&mut self.equalities, &mut self.trial_equalities);
                 std::mem::swap(&mut self.inequalities, &mut self.trial_inequalities);
@@ -280,6 +286,8 @@ impl Solver {
     fn linearise<P: Problem>(&mut self, problem: &mut P, curved: bool) {
         self.local.curved = curved;
         problem.linearise(&mut self.local);
+        self.curvature.arrive(&self.local.inequality_rows);
+        self.curvature.add_to(&mut self.local.hessian);
         self.orthonormalise_equalities();
     }
 
@@ -292,13 +300,13 @@ impl Solver {
         self.elimination.apply(&mut self.equality_steps);
     }
 
-    /// Second-order correction: adds the shortest step that satisfies the equalities linearised
-    /// with their values at the trial point. Returns whether the step changed.
+    /// Second-order correction: adds the shortest step that satisfies the equalities, and the inequalities that the trial
+    /// point violates, linearised with their values there. Returns whether the step changed.
     ///
     /// Without it the merit function rejects good steps along a curved constraint again and again
     /// (the Maratos effect).
     fn bend(&mut self, feasibility: f64) -> bool {
-        let off = self.trial_equalities.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
+        let off = violation(&self.trial_equalities, &self.trial_inequalities);
         if !off.is_finite() || off <= 0.003 * feasibility {
             return false;
         }
@@ -313,6 +321,17 @@ impl Solver {
         {
             for (d, r) in self.step.iter_mut().zip(row) {
                 *d += along * r;
+            }
+        }
+        // Rows of inequalities are few and seldom violated together: each for itself.
+        for (row, g) in
+            self.local.inequality_rows.chunks_exact(n.max(1)).zip(&self.trial_inequalities)
+        {
+            let square: f64 = row.iter().map(|r| r * r).sum();
+            if *g < 0.0 && square > 0.0 {
+                for (d, r) in self.step.iter_mut().zip(row) {
+                    *d -= g / square * r;
+                }
             }
         }
         for i in 0..n {
