@@ -11,7 +11,10 @@
 //!
 //! updates a matrix B by the formula of Broyden, Fletcher, Goldfarb and Shanno, B ← B - B s sᵀB/(sᵀB s) + y yᵀ/(yᵀs),
 //! from B = 0. A step along which the limit curves the other way, yᵀs ≤ 0, changes nothing, so that B has no negative
-//! eigenvalue and the quadratic program stays convex.
+//! eigenvalue and the quadratic program stays convex. It is used once a step was rejected: where none is, the plain steps
+//! are long enough and not too long.
+
+use crate::cholesky::dot;
 
 /// An update needs an angle between s and y of which the cosine is at least this: B would grow without bound.
 const ALONG: f64 = 0.05;
@@ -28,6 +31,8 @@ pub(crate) struct RowCurvature {
     /// Whether a step was taken whose end is not known yet, and whether B is not 0.
     pending: bool,
     some: bool,
+    /// Whether B is used: from the first step of a solve on that was rejected.
+    used: bool,
 }
 
 impl RowCurvature {
@@ -42,7 +47,13 @@ impl RowCurvature {
             product: vec![0.0; some],
             pending: false,
             some: false,
+            used: false,
         }
+    }
+
+    /// Uses B from now on; whether that changes the Hessian.
+    pub(crate) fn begin(&mut self) -> bool {
+        !std::mem::replace(&mut self.used, true) && self.some
     }
 
     /// B = 0, at the start of a solve.
@@ -50,7 +61,7 @@ impl RowCurvature {
         if self.some {
             self.matrix.fill(0.0);
         }
-        (self.pending, self.some) = (false, false);
+        (self.pending, self.some, self.used) = (false, false, false);
     }
 
     /// Keeps the step that is taken from a point with these rows and multipliers.
@@ -95,9 +106,9 @@ impl RowCurvature {
         self.some = true;
     }
 
-    /// Adds B to a Hessian.
+    /// Adds B to a Hessian, if it is used.
     pub(crate) fn add_to(&self, hessian: &mut [f64]) {
-        if self.some {
+        if self.some && self.used {
             hessian.iter_mut().zip(&self.matrix).for_each(|(h, b)| *h += b);
         }
     }
@@ -109,10 +120,6 @@ fn pull(sum: &mut [f64], rows: &[f64], multipliers: &[f64]) {
     for (row, y) in rows.chunks_exact(sum.len().max(1)).zip(multipliers) {
         sum.iter_mut().zip(row).for_each(|(sum, g)| *sum += y * g);
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]

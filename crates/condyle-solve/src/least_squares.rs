@@ -15,6 +15,7 @@
 //! below `tolerance · F`, the last step is still tried, so that directions in which F is nearly
 //! flat converge to the minimum of the caller's prior.
 
+use crate::cholesky::dot;
 use crate::curvature::RowCurvature;
 use crate::elimination::Elimination;
 use crate::quadratic::{QuadraticProgram, Status, Workspace};
@@ -262,7 +263,7 @@ impl Solver {
                 break;
             } else {
                 // A quarter of the rejected step, which may be shorter than the region is wide.
-                fresh = self.local.curved;
+                fresh = self.local.curved | self.curvature.begin();
                 near = false;
                 trust = 0.25 * trust.min(self.step_size());
                 if trust < NARROWEST {
@@ -323,12 +324,14 @@ impl Solver {
                 *d += along * r;
             }
         }
-        // Rows of inequalities are few and seldom violated together: each for itself.
+        // Rows of inequalities are few and seldom violated together: each for itself, and only where the way back is short
+        // beside the step, which then went along the limit.
+        let short = 0.1 * dot(&self.step, &self.step);
         for (row, g) in
             self.local.inequality_rows.chunks_exact(n.max(1)).zip(&self.trial_inequalities)
         {
             let square: f64 = row.iter().map(|r| r * r).sum();
-            if *g < 0.0 && square > 0.0 {
+            if *g < 0.0 && g * g < short * square {
                 for (d, r) in self.step.iter_mut().zip(row) {
                     *d -= g / square * r;
                 }
