@@ -3,7 +3,7 @@
 use crate::columns::cells;
 use crate::{AngleUnit, Table};
 use condyle_diagnostics::{Diagnostic, Error};
-use condyle_model::{CoordinateKind, Model};
+use condyle_model::{CoordinateKind, Model, Range};
 use std::f64::consts::{PI, TAU};
 
 /// How a unit is stated.
@@ -32,7 +32,7 @@ impl Table {
     /// ```
     ///
     /// A CSV is in radians up to 3π, as this program writes it, which is a note. There only angles whose ranges are
-    /// narrower than a turn are asked, if there are any that are not 0: what turns on without an end exceeds 3π in
+    /// kept and narrower than a turn are asked, if there are any that are not 0: what turns on without an end exceeds 3π in
     /// radians too.
     ///
     /// Joints turn by less than π, so that in radians more than 3π (540°) does not occur, and between them
@@ -77,8 +77,9 @@ impl Table {
         if !rule && self.angle_unit != AngleUnit::Unstated {
             return Ok(vec![]);
         }
-        let with_ends = if rule { self.largest_angle(model, TAU) } else { None };
-        let Some(largest) = with_ends.or_else(|| self.largest_angle(model, f64::INFINITY)) else {
+        let with_ends =
+            if rule && model.is_some() { self.largest_angle(model, true) } else { None };
+        let Some(largest) = with_ends.or_else(|| self.largest_angle(model, false)) else {
             return Ok(vec![]);
         };
         let Largest { size, column, time, beyond } = largest;
@@ -105,19 +106,21 @@ impl Table {
         Ok(vec![Diagnostic::warning("motion/angle-unit", message).with_help(HELP)])
     }
 
-    /// The largest of the angles whose ranges are not wider than `widest`; `None` if all are 0.
-    fn largest_angle(&self, model: Option<&Model>, widest: f64) -> Option<Largest> {
+    /// The largest of the angles, or of those `with_ends` only: with a range narrower than a turn that is kept; `None` if all
+    /// are 0.
+    fn largest_angle(&self, model: Option<&Model>, with_ends: bool) -> Option<Largest> {
         // Columns of angles, each with its range.
-        let mut angles: Vec<(usize, [f64; 2])> = match model {
+        let angles: Vec<(usize, [f64; 2])> = match model {
             Some(model) => {
                 let turns = cells(model, self).into_iter().filter_map(|cell| {
                     let coordinate = model.coordinate(cell.coordinate);
                     let rotation = coordinate.kind == CoordinateKind::Rotation;
-                    let range = [
-                        coordinate.range.lower.unwrap_or(f64::NEG_INFINITY),
-                        coordinate.range.upper.unwrap_or(f64::INFINITY),
-                    ];
-                    Some((cell.column.filter(|_| rotation)?, range))
+                    let Range { lower, upper, enforced } = coordinate.range;
+                    let range =
+                        [lower.unwrap_or(f64::NEG_INFINITY), upper.unwrap_or(f64::INFINITY)];
+                    let ends = enforced && range[1] - range[0] <= TAU;
+                    let asked = rotation && (ends || !with_ends);
+                    Some((cell.column.filter(|_| asked)?, range))
                 });
                 turns.collect()
             }
@@ -127,7 +130,6 @@ impl Table {
                 angles.map(|(column, _)| (column, [f64::NEG_INFINITY, f64::INFINITY])).collect()
             }
         };
-        angles.retain(|(_, [low, high])| high - low <= widest);
         let mut largest: Option<Largest> = None;
         let mut beyond = false;
         for (row, &time) in self.times.iter().enumerate() {
@@ -163,7 +165,7 @@ fn is_length(name: &str) -> bool {
 mod tests {
     use super::*;
     use condyle_math::Vec3;
-    use condyle_model::{ModelBuilder, Range};
+    use condyle_model::ModelBuilder;
 
     fn table(columns: &[&str], values: &[f64]) -> Table {
         Table {

@@ -205,7 +205,7 @@ impl Solver {
                 self.linearise(problem, false);
                 proposed = self.propose(trust);
             }
-            let Ok(relaxed) = proposed else {
+            let Ok(share) = proposed else {
                 summary.stop = Stop::NotFinite;
                 break;
             };
@@ -214,7 +214,7 @@ impl Solver {
             let promised = self.promise();
             let infeasible = sum_violation(&self.equalities, &self.inequalities);
             let small = promised <= options.tolerance * objective + options.floor;
-            let last = small && !relaxed && violation <= options.feasibility;
+            let last = small && share == 1.0 && violation <= options.feasibility;
             near = promised <= NEAR * objective;
             let mut trial = problem.evaluate(
                 &self.step,
@@ -230,8 +230,8 @@ impl Solver {
             }
             let trial_infeasible = sum_violation(&self.trial_equalities, &self.trial_inequalities);
             let gained = objective - trial + penalty * (infeasible - trial_infeasible);
-            // Relaxed equalities are satisfied by a tenth of the way at most.
-            let expected = promised + penalty * infeasible * if relaxed { 0.1 } else { 1.0 };
+            // Relaxed rows are satisfied by a share of the way only.
+            let expected = promised + penalty * infeasible * share;
             // Near convergence rounding dominates the gain: a step that loses no more is accepted.
             let noise = 1e-14 * objective + options.floor;
             if gained.is_finite() && gained >= 1e-4 * expected - noise {
@@ -343,9 +343,9 @@ impl Solver {
         true
     }
 
-    /// Solves the quadratic program within the trust region; returns whether its constraints were
-    /// relaxed.
-    fn propose(&mut self, trust: f64) -> Result<bool, Status> {
+    /// Solves the quadratic program within the trust region; returns the share of the violation that
+    /// the step is to end.
+    fn propose(&mut self, trust: f64) -> Result<f64, Status> {
         for i in 0..self.step.len() {
             // The step 0 must stay possible, also where the point violates a bound by rounding.
             let reach = trust * self.scale[i];
@@ -355,7 +355,7 @@ impl Solver {
         let mut ridge = 1e-12;
         loop {
             match self.solve_program() {
-                Ok(relaxed) => return Ok(relaxed),
+                Ok(share) => return Ok(share),
                 // A direction of small curvature was lost to rounding: add a multiple of the
                 // identity (Levenberg-Marquardt), from 1e-12 of the largest diagonal entry upwards,
                 // and retry.
@@ -371,12 +371,14 @@ impl Solver {
         }
     }
 
-    /// Solves the program with the present Hessian; returns whether its constraints were relaxed.
+    /// Solves the program with the present Hessian; returns the share of the violation that the step is to end.
     ///
     /// Where the trust region is too small to satisfy the linearised constraints, their violation
-    /// need only be reduced by a tenth, and failing that, not at all.
-    fn solve_program(&mut self) -> Result<bool, Status> {
-        for share in [1.0, 0.1, 0.0] {
+    /// need only be reduced by a tenth, failing that by half of what each alone could be within the region, and
+    /// failing that, not at all.
+    fn solve_program(&mut self) -> Result<f64, Status> {
+        for share in [1.0, 0.1, f64::NAN, 0.0] {
+            let share = if share.is_nan() { 0.5 * self.reducible().min(0.2) } else { share };
             for (value, full) in self.equality_values.iter_mut().zip(&self.equality_steps) {
                 *value = share * full;
             }
@@ -396,14 +398,33 @@ impl Solver {
             match solution.status() {
                 Status::Solved => {
                     self.step.copy_from_slice(solution.d());
-                    return Ok(share < 1.0);
+                    return Ok(share);
                 }
                 Status::Infeasible | Status::IterationLimit => {}
                 failed => return Err(failed),
             }
         }
         self.step.fill(0.0);
-        Ok(true)
+        Ok(0.0)
+    }
+
+    /// The smallest share of its violation by which a linearised constraint can be reduced within the bounds of a step.
+    fn reducible(&self) -> f64 {
+        let n = self.step.len();
+        let share = |row: &[f64], needed: f64| {
+            // The most that the row times the step can be, in the direction that is needed.
+            let ends = self.lower.iter().zip(&self.upper);
+            let most = row.iter().zip(ends).map(|(r, (lower, upper))| {
+                if r * needed > 0.0 { r.abs() * upper } else { -r.abs() * lower }
+            });
+            if needed == 0.0 { f64::INFINITY } else { most.sum::<f64>() / needed.abs() }
+        };
+        let LocalModel { equality_rows, inequality_rows, .. } = &self.local;
+        let equalities = equality_rows.chunks_exact(n.max(1)).zip(&self.equality_steps);
+        let inequalities = inequality_rows.chunks_exact(n.max(1)).zip(&self.inequalities);
+        let equalities = equalities.map(|(row, c)| share(row, *c));
+        let inequalities = inequalities.map(|(row, g)| share(row, (-g).max(0.0)));
+        equalities.chain(inequalities).fold(f64::INFINITY, f64::min)
     }
 
     /// The decrease of F that the model predicts for the step: -(gᵀd + ½ dᵀHd).
