@@ -190,8 +190,8 @@ mod tests {
             let mut corner = Corner { at: [0.3, 0.2], trial: [0.0; 2], goal, power };
             let summary = Solver::new(&[1.0; 2], 0, 1).minimise(&mut corner, &Stopping::default());
             assert_eq!(summary.stop, Stop::Converged, "{power}: {summary:?}");
-            // Without the curvature of the limit they are 11 to 21.
-            assert!(summary.iterations <= 17, "{power}: {summary:?}");
+            // Without the curvature of the limit they are up to 29.
+            assert!(summary.iterations <= 20, "{power}: {summary:?}");
             let truth = nearest(goal, power).powi(2);
             assert!(
                 (summary.objective - truth).abs() < 1e-4 * truth,
