@@ -15,7 +15,9 @@ use std::time::Instant;
 
 fn main() {
     let directions = std::env::args().nth(1).and_then(|n| n.parse().ok()).unwrap_or(24);
-    println!("| shape | aim | what | numbers | allowed | false accepts | false rejects | outside by | inside by | s |");
+    println!(
+        "| shape | aim | what | numbers | allowed | false accepts | false rejects | outside by | inside by | s |"
+    );
     for shape in SHAPES {
         let mut random = Random(0x9E37_79B9_7F4A_7C15);
         let samples = shape.samples(5000, &mut random);
@@ -47,7 +49,14 @@ fn main() {
                 Ok(reach) => {
                     let seconds = start.elapsed().as_secs_f64();
                     let loss = Loss::of(&region, |q| reach.allows(q));
-                    row(shape.name, aim, "reach cone", &format!("{directions} directions"), &loss, seconds);
+                    row(
+                        shape.name,
+                        aim,
+                        "reach cone",
+                        &format!("{directions} directions"),
+                        &loss,
+                        seconds,
+                    );
                 }
                 Err(error) => println!("{} {aim:?} reach: {error}", shape.name),
             }

@@ -115,11 +115,8 @@ pub(super) fn proved(cone: &ConeTwist, distance: &dyn Fn(Quat) -> f64) -> bool {
 
 /// The cone, shrunk until it is proved to be inside, then each number grown as far as that stays.
 pub(super) fn shrunk(cone: &ConeTwist, distance: &dyn Fn(Quat) -> f64) -> Option<ConeTwist> {
-    let scaled = |by: f64| ConeTwist {
-        swing: cone.swing.map(|a| a * by),
-        twist: cone.twist * by,
-        ..*cone
-    };
+    let scaled =
+        |by: f64| ConeTwist { swing: cone.swing.map(|a| a * by), twist: cone.twist * by, ..*cone };
     let least = 0.05;
     if proved(cone, distance) {
         return Some(grown(cone, distance));

@@ -214,7 +214,8 @@ mod tests {
                 }
             }
         }
-        let ball = |axis, angle| Law::MujocoBall.allows(Quat::from_axis_angle(axis, angle), [a, b], t);
+        let ball =
+            |axis, angle| Law::MujocoBall.allows(Quat::from_axis_angle(axis, angle), [a, b], t);
         assert!(ball(Vec3::X, -1.09) && !ball(Vec3::Z, 1.11));
     }
 

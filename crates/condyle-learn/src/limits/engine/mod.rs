@@ -26,6 +26,6 @@ mod region;
 pub use cone_twist::ConeTwist;
 pub use fitting::{Aim, EngineError, cone_twist};
 pub use law::{Law, Parted};
-pub use loss::{Lost, Loss};
+pub use loss::{Loss, Lost};
 pub use reach::{ReachCone, reach_cone};
 pub use region::Region;

@@ -69,12 +69,8 @@ pub fn reach_cone(
     }
     let sectors = sectors(region, about, directions, aim);
     let dear = if aim == Aim::Inside { DEAR } else { 1.0 };
-    let mut fit = Fit {
-        corners: begun(about, directions),
-        rest: [-about.twist, about.twist],
-        sectors,
-        dear,
-    };
+    let mut fit =
+        Fit { corners: begun(about, directions), rest: [-about.twist, about.twist], sectors, dear };
     for _ in 0..2 {
         fit.scan();
         fit.scan_rest();
@@ -263,7 +259,8 @@ impl Fit {
                 for _ in 0..12 {
                     let before = self.rest;
                     self.rest[end] = (self.rest[end] + sign * step).clamp(-PI, PI);
-                    let cost = if self.rest[0] <= self.rest[1] { self.whole() } else { f64::INFINITY };
+                    let cost =
+                        if self.rest[0] <= self.rest[1] { self.whole() } else { f64::INFINITY };
                     if cost < best {
                         best = cost;
                     } else {
