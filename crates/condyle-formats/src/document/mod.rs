@@ -34,6 +34,7 @@ pub mod model;
 pub mod names;
 mod number;
 pub mod recipe;
+mod region;
 mod render;
 pub mod setup;
 mod template;
