@@ -27,7 +27,9 @@
 //! | `split` | which coordinates control, where nobody says |
 //! | `region` | where the training angles are |
 //! | `law` | what is learned |
+//! | `applied` | laws in a model |
 
+mod applied;
 mod basis;
 mod compared;
 mod design;
@@ -39,6 +41,7 @@ mod samples;
 mod split;
 mod student;
 
+pub use applied::apply;
 pub use basis::{Basis, LawFunction};
 pub use compared::{Scope, Scoped};
 pub use judged::{LeftOut, Validity};

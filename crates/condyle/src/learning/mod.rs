@@ -1,17 +1,20 @@
-//! Limits of joints from recordings: by path, of any kind that holds orientations.
+//! Limits of joints, and laws that couple coordinates, from recordings: by path.
 //!
 //! | module | what |
 //! | --- | --- |
 //! | `take` | the rotations that one recording shows: by a recipe, by a model and a joint, or as they stand |
+//! | `coupling` | frames of trials by path, tracked where they hold markers |
 //! | `limit` | a limit from takes: thinned, with a layer from takes that were left out |
 //! | `query` | what a limit says of rotations |
 //! | `mobility` | a learned limit in numbers, and two compared |
 
+mod coupling;
 mod limit;
 mod mobility;
 mod query;
 mod take;
 
+pub use coupling::{Coupled, Gathered, GroupTable, gather, group_table};
 pub use limit::{How, LearnedFrom, MOST_INDEPENDENT, learn, spheres};
 pub use mobility::{About, Axis, Region, Report, Side, Versus, report, versus};
 pub use query::{Answered, Limit};
