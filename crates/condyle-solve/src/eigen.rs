@@ -25,7 +25,8 @@ pub fn symmetric(matrix: &[f64], n: usize) -> (Vec<f64>, Vec<f64>) {
     (0..n).for_each(|i| vectors[i * n + i] = 1.0);
     for _ in 0..60 {
         let total: f64 = a.iter().map(|x| x * x).sum();
-        let off: f64 = (0..n).flat_map(|i| (0..i).map(move |j| i * n + j)).map(|k| a[k] * a[k]).sum();
+        let off: f64 =
+            (0..n).flat_map(|i| (0..i).map(move |j| i * n + j)).map(|k| a[k] * a[k]).sum();
         // Not a number ends it, too.
         if off.partial_cmp(&(1e-32 * total)) != Some(std::cmp::Ordering::Greater) {
             break;

@@ -68,7 +68,8 @@ impl Regression {
                 part.iter_mut().for_each(|x| *x /= length);
             }
             if let (Some(penalty), true) = (ridge.get(column), rows > given) {
-                part[given + column] = penalty.max(0.0).sqrt() / if length > 0.0 { length } else { 1.0 };
+                part[given + column] =
+                    penalty.max(0.0).sqrt() / if length > 0.0 { length } else { 1.0 };
             }
         }
         let mut order: Vec<usize> = (0..columns).collect();
@@ -296,10 +297,8 @@ mod tests {
     fn a_sum_of_columns_is_named_with_its_parts() {
         let rows = 30;
         let two = numbers(rows * 2);
-        let design: Vec<f64> = two
-            .chunks(2)
-            .flat_map(|x| [x[0], 3.0 * x[0] - 0.5 * x[1], x[1], 0.0])
-            .collect();
+        let design: Vec<f64> =
+            two.chunks(2).flat_map(|x| [x[0], 3.0 * x[0] - 0.5 * x[1], x[1], 0.0]).collect();
         let fit = Regression::new(&design, 4, &[]);
         assert_eq!(fit.rank(), 2);
         let zero = fit.dropped().iter().position(|column| *column == 3);

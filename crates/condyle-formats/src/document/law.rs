@@ -187,7 +187,8 @@ impl Reader<'_> {
 
     fn laws(&mut self, top: &Fields<'_>) -> Option<LawDocument> {
         let [name, source, frames] = ["name", "source", "frames"].map(|key| self.said(top, key));
-        let control = self.required(top, "control", "the coordinates in control, such as [\"flexion\"]");
+        let control =
+            self.required(top, "control", "the coordinates in control, such as [\"flexion\"]");
         let controls: Option<Vec<String>> = control.and_then(|node| {
             let (names, _) = self.names(node, "control");
             if names.is_empty() {
@@ -201,7 +202,8 @@ impl Reader<'_> {
             None => Some(vec![None; controls.len()]),
             Some(node) => self.list(node, "kinds").and_then(|list| {
                 let kinds: Vec<_> = list.iter().map(|node| self.kind_of(node, "kinds")).collect();
-                let kinds: Vec<Option<CoordinateKind>> = kinds.into_iter().collect::<Option<_>>()?;
+                let kinds: Vec<Option<CoordinateKind>> =
+                    kinds.into_iter().collect::<Option<_>>()?;
                 if kinds.len() != controls.len() {
                     let message = format!("`kinds` has {} names", kinds.len());
                     self.length(node.spot, message, format!("give {}", controls.len()));
@@ -259,7 +261,8 @@ impl Reader<'_> {
                 let name = self.text(node, "basis")?;
                 let Some(basis) = Basis::named(&name.text) else {
                     let message = format!("unknown basis `{}`", name.text);
-                    let help = "give linear, polynomial:2 to polynomial:6, or spline:3 to spline:20";
+                    let help =
+                        "give linear, polynomial:2 to polynomial:6, or spline:3 to spline:20";
                     self.texts.error(name.spot, "law/basis", message, help);
                     return None;
                 };
@@ -309,7 +312,11 @@ impl Reader<'_> {
                 let parts: Vec<_> = list.iter().map(|node| self.function(node, "parts")).collect();
                 if parts.len() != controls {
                     let message = format!("`parts` has {} functions", parts.len());
-                    self.length(node.spot, message, format!("give {controls}, one for each control"));
+                    self.length(
+                        node.spot,
+                        message,
+                        format!("give {controls}, one for each control"),
+                    );
                     return None;
                 }
                 LawFunction::Sum { intercept, parts: parts.into_iter().collect::<Option<_>>()? }
@@ -395,7 +402,8 @@ pub fn write(laws: &LawDocument) -> String {
             let _ = writeln!(out, "accepted = {accepted}");
         }
         if !law.ci95.is_empty() {
-            let one = |(name, ends): &(String, [f64; 2])| format!("{} = {}", key(name), numbers(ends));
+            let one =
+                |(name, ends): &(String, [f64; 2])| format!("{} = {}", key(name), numbers(ends));
             let all: Vec<String> = law.ci95.iter().map(one).collect();
             let _ = writeln!(out, "ci95 = {{ {} }}", all.join(", "));
         }

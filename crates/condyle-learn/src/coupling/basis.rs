@@ -1,6 +1,8 @@
 //! Terms of controls of which a law is a sum.
 
-use condyle_math::function::{Curve, Function, FunctionOfSeveral, MultivariatePolynomial, SimmSpline};
+use condyle_math::function::{
+    Curve, Function, FunctionOfSeveral, MultivariatePolynomial, SimmSpline,
+};
 
 /// Which terms a law has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -99,7 +101,11 @@ impl LawFunction {
 pub(super) enum Terms {
     Linear(usize),
     /// The exponents of each term, in the order of [`MultivariatePolynomial::up_to_order`], the constant left out.
-    Powers { controls: usize, order: usize, exponents: Vec<Vec<u32>> },
+    Powers {
+        controls: usize,
+        order: usize,
+        exponents: Vec<Vec<u32>>,
+    },
     /// For each control the splines that are 1 at one knot and 0 at the others; the first knot is left out, so that a
     /// constant is no sum of them.
     Splines(Vec<Vec<SimmSpline>>),
@@ -137,7 +143,10 @@ impl Terms {
         match self {
             Self::Linear(_) => row.extend_from_slice(controls),
             Self::Powers { exponents, .. } => row.extend(exponents.iter().map(|powers| {
-                powers.iter().zip(controls).fold(1.0, |product, (power, x)| product * x.powi(*power as i32))
+                powers
+                    .iter()
+                    .zip(controls)
+                    .fold(1.0, |product, (power, x)| product * x.powi(*power as i32))
             })),
             Self::Splines(all) => {
                 for (splines, x) in all.iter().zip(controls) {
@@ -208,8 +217,10 @@ impl Terms {
                 let parts = all.iter().map(|splines| {
                     let (own, others) = rest.split_at(splines.len().min(rest.len()));
                     rest = others;
-                    let x: Vec<f64> =
-                        splines.first().map(|s| s.knots().map(|(x, _)| x).collect()).unwrap_or_default();
+                    let x: Vec<f64> = splines
+                        .first()
+                        .map(|s| s.knots().map(|(x, _)| x).collect())
+                        .unwrap_or_default();
                     let y = [&[0.0], own].concat();
                     SimmSpline::new(x, y)
                         .map_or(Function::constant(0.0), |s| Curve::SimmSpline(s).into())

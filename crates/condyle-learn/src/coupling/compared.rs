@@ -109,9 +109,8 @@ pub(super) fn compared(
 /// The global law's error on some trials, each left out; its parts are the trials in their order.
 fn of_global(samples: &Samples, members: &[usize], global: &(Design, Vec<f64>)) -> Option<f64> {
     let (design, y) = global;
-    let used: Vec<usize> = (0..samples.trials.len())
-        .filter(|t| samples.frames_of(&samples.trials[*t]) > 0)
-        .collect();
+    let used: Vec<usize> =
+        (0..samples.trials.len()).filter(|t| samples.frames_of(&samples.trials[*t]) > 0).collect();
     if design.parts.len() != used.len() {
         return None;
     }

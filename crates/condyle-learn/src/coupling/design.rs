@@ -113,8 +113,7 @@ impl Design {
         let mut gamma = self.projected(&about, 0..self.rows);
         gamma[0] = 0.0;
         let coefficients = self.fit.coefficients(&gamma[1..]);
-        let residuals =
-            (0..self.rows).map(|row| about[row] - dot(self.row(row), &gamma)).collect();
+        let residuals = (0..self.rows).map(|row| about[row] - dot(self.row(row), &gamma)).collect();
         gamma[0] = mean * (self.rows as f64).sqrt();
         let intercept = mean - dot(&self.means, &coefficients);
         Fitted { intercept, coefficients, residuals, gamma }

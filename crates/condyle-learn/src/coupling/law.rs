@@ -1,8 +1,12 @@
 //! What is learned.
 
 use super::{Basis, Groups, LawFunction, LeftOut, Scoped, Validity};
+use condyle_diagnostics::Diagnostic;
 use condyle_model::CoordinateKind;
 use condyle_model::component::Region;
+
+/// Terms with a greater condition number are nearly sums of each other (Belsley, Kuh & Welsch 1980).
+const NEARLY_DEPENDENT: f64 = 30.0;
 
 /// What people want to know of laws.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -119,5 +123,43 @@ impl Law {
     #[must_use]
     pub fn accepted(&self) -> bool {
         self.left_out.as_ref().is_some_and(LeftOut::is_better)
+    }
+}
+
+impl Laws {
+    /// What a user should know before the laws are used.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<Diagnostic> {
+        let mut all = vec![];
+        if self.blocks {
+            let message = "there is one trial: intervals and left-out errors are those of blocks of time in it";
+            let help = "give more trials; one says nothing about others";
+            all.push(Diagnostic::warning("learn/one-trial", message).with_help(help));
+        }
+        for (term, parts) in &self.dropped {
+            let sum: Vec<String> =
+                parts.iter().map(|(name, share)| format!("{share:.4}·{name}")).collect();
+            let message = match sum.is_empty() {
+                true => format!("`{term}` does not move: it is left out"),
+                false => format!("`{term}` is {} in all frames: it is left out", sum.join(" + ")),
+            };
+            all.push(Diagnostic::warning("learn/dropped", message));
+        }
+        if self.condition > NEARLY_DEPENDENT && self.ridge == 0.0 {
+            let message = format!(
+                "the controls move nearly together (condition {:.0}): single coefficients mean little",
+                self.condition
+            );
+            let help = "use fewer controls, or a ridge such as --ridge 0.01";
+            all.push(Diagnostic::warning("learn/collinear", message).with_help(help));
+        }
+        for law in self.laws.iter().filter(|law| !law.accepted()) {
+            let message = format!(
+                "the law of `{}` does not predict what was left out better than the mean, beyond chance",
+                law.dependent
+            );
+            all.push(Diagnostic::warning("learn/not-accepted", message));
+        }
+        all
     }
 }

@@ -93,8 +93,9 @@ pub fn learn(
     }
     let whole = Design::new(&rows, terms.count(), parts, settings.ridge);
     if whole.fit.rank() == 0 {
-        return Err(Error::new("learn/no-control", "nothing that is in control moves")
-            .with_help("name other coordinates with --control, or give trials in which they move"));
+        return Err(Error::new("learn/no-control", "nothing that is in control moves").with_help(
+            "name other coordinates with --control, or give trials in which they move",
+        ));
     }
     let clusters = whole.clusters();
     let alone: Vec<Vec<usize>> = (0..whole.parts.len()).map(|part| vec![part]).collect();
@@ -149,9 +150,7 @@ pub fn learn(
             validity: Some(validity(&y, &fitted.residuals)),
             scoped: match blocks {
                 true => vec![],
-                false => {
-                    compared(samples, control, dependent, &terms, settings.ridge, &by_trial)
-                }
+                false => compared(samples, control, dependent, &terms, settings.ridge, &by_trial),
             },
             coefficients: fitted.coefficients,
         });

@@ -91,8 +91,7 @@ impl Samples {
     /// ```
     pub fn add(&mut self, name: &str, groups: Groups, rows: &[f64], badly_tracked: usize) {
         let width = self.columns.len().max(1);
-        let mut trial =
-            Trial { name: name.to_owned(), groups, badly_tracked, ..Trial::default() };
+        let mut trial = Trial { name: name.to_owned(), groups, badly_tracked, ..Trial::default() };
         for row in rows.chunks_exact(width) {
             if row.iter().all(|x| x.is_finite()) {
                 trial.values.extend_from_slice(row);

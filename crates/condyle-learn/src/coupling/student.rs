@@ -89,7 +89,11 @@ pub fn quantile(below: f64, freedom: f64) -> f64 {
     }
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
-        if share(middle, freedom) < below { low = middle } else { high = middle }
+        if share(middle, freedom) < below {
+            low = middle
+        } else {
+            high = middle
+        }
         if high - low <= 1e-14 * high {
             break;
         }

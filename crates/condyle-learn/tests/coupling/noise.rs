@@ -50,9 +50,13 @@ fn intervals_hold_the_truth() {
 /// Issue: noise is accepted in under 5 %, and by the criterion of 2010 nearly always.
 #[test]
 fn noise_is_not_accepted_but_by_the_criterion_of_2010() {
-    for (wandering, count, effect) in
-        [(false, 12, 0.003), (true, 12, 0.003), (true, 6, 0.003), (true, 20, 0.02), (false, 6, 0.01)]
-    {
+    for (wandering, count, effect) in [
+        (false, 12, 0.003),
+        (true, 12, 0.003),
+        (true, 6, 0.003),
+        (true, 20, 0.02),
+        (false, 6, 0.01),
+    ] {
         let trials = Trials { unrelated: true, wandering, count, effect, ..REAL };
         let (mut accepted, mut valid, mut signed) = (0, 0, 0);
         for repetition in 0..REPETITIONS {

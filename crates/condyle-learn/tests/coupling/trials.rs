@@ -66,7 +66,10 @@ impl Trials {
             let (own, wander) = (
                 [0.05 * dice.normal(), 0.05 * dice.normal()],
                 [0.03, 0.04].map(|size| {
-                    dice.sequence(self.frames, 0.97).into_iter().map(|x| size * x).collect::<Vec<_>>()
+                    dice.sequence(self.frames, 0.97)
+                        .into_iter()
+                        .map(|x| size * x)
+                        .collect::<Vec<_>>()
                 }),
             );
             let noise = dice.sequence(self.frames, self.memory);

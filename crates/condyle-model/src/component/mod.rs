@@ -394,9 +394,7 @@ impl Law {
     }
 
     /// The same, to be changed in place.
-    pub(crate) fn several_mut(
-        &mut self,
-    ) -> Option<&mut condyle_math::function::FunctionOfSeveral> {
+    pub(crate) fn several_mut(&mut self) -> Option<&mut condyle_math::function::FunctionOfSeveral> {
         match self {
             Self::Combine(law) => Some(&mut law.function),
             Self::Correlate(law) => Some(&mut law.function),

@@ -87,8 +87,7 @@ pub fn gather(
         let full = path.file_name().unwrap_or_default().to_string_lossy();
         let listed = wanted.groups.get(&*full).or_else(|| wanted.groups.get(&name));
         let groups = listed.cloned().unwrap_or_else(|| Groups::of_name(&name));
-        let Read { value: content, warnings: said } =
-            open::content_with(path, None, wanted.zeros)?;
+        let Read { value: content, warnings: said } = open::content_with(path, None, wanted.zeros)?;
         warnings.extend(said);
         let (rows, bad, rms) = match (content, &wanted.model) {
             (Content::Table(table), None) => {
@@ -113,8 +112,9 @@ pub fn gather(
                 (of_motion(model, &meant, &motion), 0, None)
             }
             (Content::Recording(_) | Content::Trial(_), None) => {
-                let error = Error::new("learn/model", "markers need a model with which they are tracked")
-                    .with_help("give one whose joint is free with --model M --joint J");
+                let error =
+                    Error::new("learn/model", "markers need a model with which they are tracked")
+                        .with_help("give one whose joint is free with --model M --joint J");
                 return Err(failed(path, error));
             }
             (Content::Recording(recording), Some(model)) => {
@@ -162,7 +162,8 @@ fn coordinates(model: &Model, wanted: &Coupled) -> Result<Vec<CoordinateId>, Err
         for id in model.coordinates_of(set) {
             let coordinate = model.coordinate(id);
             if coordinate.kind.stored() != 1 {
-                let message = format!("`{}` is an orientation, which is no single number", coordinate.name);
+                let message =
+                    format!("`{}` is an orientation, which is no single number", coordinate.name);
                 let help = "give the joint three angles";
                 return Err(Error::new("learn/orientation", message).with_help(help));
             }
@@ -247,8 +248,11 @@ fn of_table(
     wanted: &Coupled,
     warnings: &mut Vec<Diagnostic>,
 ) -> Result<Vec<f64>, Error> {
-    let said = table.settle_angles(None, wanted.angles)?;
-    warnings.extend(said.into_iter().filter(|s| s.severity > condyle_diagnostics::Severity::Note));
+    // What a table does not state stays as it is: wheels turn by more than joints do, so that sizes tell nothing.
+    if let Some(told) = wanted.angles {
+        table.angle_unit = told;
+    }
+    let degrees = table.angle_unit == AngleUnit::Degrees;
     let names: Vec<String> = if !gathered.samples.columns.is_empty() {
         gathered.samples.columns.clone()
     } else if wanted.control.is_empty() || wanted.follow.is_empty() {
@@ -268,17 +272,16 @@ fn of_table(
         .iter()
         .map(|name| {
             table.column(name).ok_or_else(|| {
-                let all = || {
-                    format!("columns are: {}", condyle_diagnostics::listed(&table.columns))
-                };
+                let all =
+                    || format!("columns are: {}", condyle_diagnostics::listed(&table.columns));
                 let columns = table.columns.iter().map(String::as_str);
                 let help = did_you_mean(name, columns, all);
                 Error::new("learn/column", format!("there is no column `{name}`")).with_help(help)
             })
         })
         .collect::<Result<_, _>>()?;
-    let kinds: Vec<Option<CoordinateKind>> = names.iter().map(|name| kind_of(name)).collect();
-    let degrees = table.angle_unit == AngleUnit::Degrees;
+    let kinds: Vec<Option<CoordinateKind>> =
+        names.iter().map(|name| kind_of(name, degrees)).collect();
     let factors: Vec<f64> = kinds
         .iter()
         .map(|kind| match kind {
@@ -313,19 +316,20 @@ fn of_table(
     Ok((0..table.rows()).flat_map(row).collect())
 }
 
-/// A translation or a rotation by the name of its column.
-fn kind_of(name: &str) -> Option<CoordinateKind> {
+/// A translation or a rotation by the name of its column; in a table of degrees all that is no length is an angle.
+fn kind_of(name: &str, degrees: bool) -> Option<CoordinateKind> {
     let lower = name.to_ascii_lowercase();
     let bare = lower.rsplit('/').next().unwrap_or(&lower);
-    let turns = ["rot", "angle", "flex", "duct", "tilt", "list"];
+    let turns = ["rot", "angle", "flex", "duct", "tilt", "list", "exten", "elev"];
     let ends = ["_x", "_y", "_z"];
+    let turned = turns.iter().any(|word| bare.contains(word));
     let along = ["x", "y", "z", "t_x", "t_y", "t_z"].contains(&bare)
-        || (ends.iter().any(|end| bare.ends_with(end)) && !turns.iter().any(|w| bare.contains(w)))
+        || (ends.iter().any(|end| bare.ends_with(end)) && !turned)
         || bare.contains("distance");
     if is_length(name) || along {
         return Some(CoordinateKind::Translation);
     }
-    Some(CoordinateKind::Rotation)
+    (degrees || turned).then_some(CoordinateKind::Rotation)
 }
 
 /// Reads a table of groups: lines of `file,subject,motion` or `file,subject,motion,sub_motion` below a line that names them.
@@ -341,9 +345,9 @@ fn kind_of(name: &str) -> Option<CoordinateKind> {
 pub fn group_table(text: &str) -> Result<GroupTable, Error> {
     let wrong = |line: usize, message: String| {
         let place = condyle_diagnostics::Place::at_line(line);
-        Error::new("learn/groups", message)
-            .at(place)
-            .with_help("begin with a line `file,subject,motion` or `file,subject,motion,sub_motion`")
+        Error::new("learn/groups", message).at(place).with_help(
+            "begin with a line `file,subject,motion` or `file,subject,motion,sub_motion`",
+        )
     };
     let mut lines = text.lines().enumerate().filter(|(_, line)| {
         let line = line.trim();

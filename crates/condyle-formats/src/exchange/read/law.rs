@@ -7,10 +7,10 @@ use condyle_learn::limits::field::made;
 use condyle_math::{EulerOrder, Quat, Vec3};
 use condyle_model::Law;
 use condyle_model::component::{
-    Along, AngleNames, Angles, Ball, Centre, Combine, Compensate, ConstantCurvature, Contact, Correlate,
-    ContactPair, Curve, Depend, Ellipse, Ellipsoid, FieldLimit, Gliding, HalfSpace, Heading,
-    JointCone, Map, Parameters, Pivot, Place, Product, Reflection, Registry, RelativeOrientation,
-    Region, RelativePosition, Rotate, Scale, Shear, SurfaceAxis, Swinging, Translate,
+    Along, AngleNames, Angles, Ball, Centre, Combine, Compensate, ConstantCurvature, Contact,
+    ContactPair, Correlate, Curve, Depend, Ellipse, Ellipsoid, FieldLimit, Gliding, HalfSpace,
+    Heading, JointCone, Map, Parameters, Pivot, Place, Product, Reflection, Region, Registry,
+    RelativeOrientation, RelativePosition, Rotate, Scale, Shear, SurfaceAxis, Swinging, Translate,
 };
 use condyle_model::limit::field::{About, Chart, Ground, Known, LearnedLimit, Settings, snapped};
 use condyle_model::limit::{Cone, ConePoint, Projection};

@@ -6,10 +6,10 @@ use condyle_math::Vec3;
 use condyle_math::function::SimmSpline;
 use condyle_model::Law;
 use condyle_model::component::{
-    Along, AngleNames, Angles, Ball, Centre, Combine, Compensate, ConstantCurvature, Contact, Correlate,
-    ContactPair, Curve, Depend, Ellipsoid, FieldLimit, Gliding, Heading, JointCone, Map, Place,
-    Product, Region, RelativeOrientation, RelativePosition, Rotate, Scale, Shear, SurfaceAxis, Swinging,
-    Translate,
+    Along, AngleNames, Angles, Ball, Centre, Combine, Compensate, ConstantCurvature, Contact,
+    ContactPair, Correlate, Curve, Depend, Ellipsoid, FieldLimit, Gliding, Heading, JointCone, Map,
+    Place, Product, Region, RelativeOrientation, RelativePosition, Rotate, Scale, Shear,
+    SurfaceAxis, Swinging, Translate,
 };
 use condyle_model::limit::field::{About, Ground, Known, Settings};
 use condyle_model::limit::{ConePoint, Projection};

@@ -314,8 +314,7 @@ impl Compiler<'_> {
                         found.push((Signal::Output(id, k as u32), (coordinate, steps)));
                     }
                 }
-                Law::Combine(Combine { function })
-                | Law::Correlate(Correlate { function, .. }) => {
+                Law::Combine(Combine { function }) | Law::Correlate(Correlate { function, .. }) => {
                     let coordinate = |signal: &Signal| match route(*signal)? {
                         (id, steps) if steps.is_empty() => Some(id),
                         _ => None,

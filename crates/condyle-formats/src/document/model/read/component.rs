@@ -12,8 +12,8 @@ use condyle_diagnostics::did_you_mean;
 use condyle_math::function::Function;
 use condyle_model::Law;
 use condyle_model::component::{
-    Arity, Ball, Combine, Compensate, Correlate, Depend, Kind, Map, Pivot, PivotError, Place, PortType,
-    Product, RelativeOrientation, Rotate, Translate,
+    Arity, Ball, Combine, Compensate, Correlate, Depend, Kind, Map, Pivot, PivotError, Place,
+    PortType, Product, RelativeOrientation, Rotate, Translate,
 };
 
 /// The help where a direction is missing.
