@@ -52,7 +52,7 @@ impl Regression {
     /// ```
     #[must_use]
     pub fn new(design: &[f64], columns: usize, ridge: &[f64]) -> Self {
-        let given = if columns == 0 { 0 } else { design.len() / columns };
+        let given = design.len().checked_div(columns).unwrap_or(0);
         let rows = given + if ridge.is_empty() { 0 } else { columns };
         // Column by column, the penalties as rows below.
         let mut work = vec![0.0; rows * columns];

@@ -336,10 +336,8 @@ impl Reader<'_> {
                 ci95.push((entry.key.text.clone(), self.some::<2>(&entry.node, &entry.key.text)?));
             }
         }
-        let accepted = match fields.get("accepted") {
-            Some(node) => Some(self.flag(Some(node), "accepted", false)),
-            None => None,
-        };
+        let accepted =
+            fields.get("accepted").map(|node| self.flag(Some(node), "accepted", false));
         Some(WrittenLaw {
             dependent: name.to_owned(),
             kind,

@@ -28,7 +28,7 @@ impl Scope {
         }
     }
 
-    fn of<'t>(self, trial: &'t Trial) -> &'t str {
+    fn of(self, trial: &Trial) -> &str {
         match self {
             Self::Global => "",
             Self::Motion => &trial.groups.motion,
