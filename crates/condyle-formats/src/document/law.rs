@@ -336,8 +336,7 @@ impl Reader<'_> {
                 ci95.push((entry.key.text.clone(), self.some::<2>(&entry.node, &entry.key.text)?));
             }
         }
-        let accepted =
-            fields.get("accepted").map(|node| self.flag(Some(node), "accepted", false));
+        let accepted = fields.get("accepted").map(|node| self.flag(Some(node), "accepted", false));
         Some(WrittenLaw {
             dependent: name.to_owned(),
             kind,
