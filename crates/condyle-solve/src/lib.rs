@@ -38,6 +38,7 @@
 //! ```
 
 pub mod cholesky;
+mod curvature;
 pub mod eigen;
 mod elimination;
 pub mod least_squares;
