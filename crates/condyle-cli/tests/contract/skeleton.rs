@@ -120,7 +120,7 @@ fn a_model_goes_to_bvh_looking_along_z_and_a_skeleton_as_it_is() {
     }
     // With z up it looks against y then, as that is the same figure turned upright.
     let upright = model.replace("kind = \"model\"\n", "kind = \"model\"\nup = \"z\"\n");
-    folder.write("up.toml", &upright.replace("[0, 1.6, 0]", "[0, 0, 1.6]"));
+    folder.write("up.toml", upright.replace("[0, 1.6, 0]", "[0, 0, 1.6]"));
     folder.condyle(&["convert", "up.toml", "up.bvh", "--length-unit", "cm"]).expect(0);
     let found = folder.condyle(&["fk", "up.bvh", "--length-unit", "cm", "--up-axis", "z"]).json();
     let found = translation(&found["frames"][0], "nose");

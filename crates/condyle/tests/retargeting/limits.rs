@@ -145,7 +145,7 @@ fn a_motion_that_comes_back_at_the_other_end_of_a_range_is_followed_there() {
 #[test]
 fn an_elbow_that_goes_all_the_way_round_is_followed_where_it_comes_back() {
     // No elbow does that; a limb that is led frame by frame stops at the end of its range and stays there when
-    // the motion comes in at the other end, 50 degrees off for good: what the motion is without limits shows the way.
+    // the motion comes in at the other end: what the motion is without limits shows the way.
     let human = open::model("human".as_ref()).unwrap().value;
     let mut source = Motion::default();
     for frame in 0..80 {
