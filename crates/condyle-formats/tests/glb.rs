@@ -391,6 +391,6 @@ fn corners_have_colours_of_their_own() {
     // A colour too few, and one that is none.
     for wrong in [vec![[0.0; 3]], vec![[2.0; 3]; count]] {
         scene.surfaces[3].colours = wrong;
-        assert_eq!(write(&scene).unwrap_err().code, "glb/surface");
+        assert_eq!(write(&scene).unwrap_err().code(), "glb/surface");
     }
 }
