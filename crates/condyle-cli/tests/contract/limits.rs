@@ -380,7 +380,7 @@ fn a_limit_is_drawn_as_a_surface() {
     let said = folder.condyle(&["limits", "mesh", "L.toml", "-o", "M.glb"]).expect(0);
     let most = said.split("(yellow) to ").nth(1).and_then(|rest| rest.split('\u{b0}').next());
     near(most.and_then(|n| n.parse().ok()).expect("degrees"), 120.0, 5.0);
-    let bytes = std::fs::read(folder.path("M.glb")).expect("a file");
+    let bytes = std::fs::read(folder.path().join("M.glb")).expect("a file");
     let text = String::from_utf8_lossy(&bytes);
     assert!(text.contains("COLOR_0") && text.contains("(green-blue)"));
     let run = ["limits", "mesh", "L.toml", "--space", "quaternion", "-o", "Q.glb"];
