@@ -1,6 +1,7 @@
 //! `condyle limits`: what learned limits say of rotations, of the mobility of a joint, and to engines.
 
 mod engine;
+mod mesh;
 mod report;
 
 use super::Outcome;
@@ -33,6 +34,8 @@ enum What {
     Report(report::Report),
     /// Tell what game and robot engines can hold of a limit, in their own numbers, and what is lost.
     Engine(engine::Engine),
+    /// Draw the boundary of a limit as a surface (.glb): in quaternion space, or the directions that a bone reaches.
+    Mesh(mesh::Mesh),
 }
 
 impl Limits {
@@ -41,6 +44,7 @@ impl Limits {
             What::Query(query) => query.run(),
             What::Report(report) => report.run(),
             What::Engine(engine) => engine.run(),
+            What::Mesh(mesh) => mesh.run(),
         }
     }
 }

@@ -13,7 +13,8 @@ mod layer;
 mod nearest;
 
 pub use condyle_model::limit::field::{
-    About, Answer, Evidence, Field, Ground, Hole, Known, Learned, LearnedLimit, Settings, State,
+    About, Answer, Evidence, Fibre, Field, Ground, Hole, Known, Learned, LearnedLimit, Settings,
+    State, fibre,
 };
 
 use super::Cloud;

@@ -6,6 +6,7 @@
 //!        -> a smooth function   chart, lattice     a cubic spline over all rotations
 //! rotation -> Answer            projection         state, distance, nearest valid rotation, evidence
 //!                               boundary           where its search begins
+//! direction -> Fibre            reach              whether a bone can point there, and how far it then twists
 //! ```
 //!
 //! Distances are angles of rotation in radians, positive inside, and go on outside everywhere. `q` and `-q` give the same
@@ -25,12 +26,14 @@ mod learned;
 mod outer;
 mod packed;
 mod projection;
+mod reach;
 
 pub use boundary::Boundary;
 pub use chart::Chart;
 pub use lattice::Lattice;
 pub use learned::{About, LearnedLimit};
 pub use packed::{packed, snapped, unpacked};
+pub use reach::{Fibre, fibre};
 
 use condyle_math::{Quat, Vec3};
 use std::f64::consts::PI;

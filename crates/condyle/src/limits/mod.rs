@@ -27,6 +27,10 @@
 //! [`open::limit`](crate::open::limit) opens a file, [`encode::limit`](crate::encode::limit) gives the bytes of one. The field
 //! itself is made when [`LearnedLimit::field`] is first called, which for 96 nodes takes about a second.
 
+mod swing;
+
+pub use swing::{COLOURS, LEVEL, Swing};
+
 pub use condyle_learn::limits::field::{
     About, Answer, Evidence, Field, Ground, Hole, Known, Learned, LearnedLimit, Settings, State,
     limit as learn,

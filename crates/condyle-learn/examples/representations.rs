@@ -1,0 +1,257 @@
+//! Ways to hold the same samples, compared: `cargo run --release -p condyle-learn --example representations [COUNTS]`.
+//!
+//! Of each shape and number of samples and for each way: balanced accuracy at the true distance of 3 degrees, the share of the
+//! inside and of the outside that is right there, the volume over the true one, seconds to learn, nanoseconds of a query of uniform
+//! rotations, bytes of a file and of what is in memory.
+//!
+//! | way | what |
+//! | --- | --- |
+//! | closing | the default method |
+//! | nearest | valid within the angle of a sample that 95 % of samples have to their nearest |
+//! | cells | a grid of cells as wide as a spacing that hold a sample or touch six that do |
+//! | spheres | Herda et al. 2003, centred, with the default stop |
+//! | best spheres | of its stages, split into six and into two, the one with the best accuracy: the truth is looked at |
+//! | with negative | `spheres`, and spheres taken away where F ≥ 1 and no sample is near |
+
+#[path = "../tests/field/shapes.rs"]
+#[allow(dead_code, reason = "what only tests ask for")]
+mod shapes;
+
+use condyle_learn::limits::herda2003::{
+    Chart, Fitting, Options, Placement, SphereField, SphereLimit, Split, profile,
+};
+use condyle_learn::limits::{Cloud, Settings, State, learn, uniform};
+use condyle_math::{Quat, Vec3};
+use shapes::{Random, SHAPES, Shape, quantile};
+use std::collections::HashSet;
+use std::hint::black_box;
+use std::sync::OnceLock;
+use std::time::Instant;
+
+/// Seconds that this thread has run: on a busy machine the clock tells more. Without the system's count, the clock.
+fn now() -> f64 {
+    static START: OnceLock<Instant> = OnceLock::new();
+    let start = START.get_or_init(Instant::now);
+    let counted = std::fs::read_to_string("/proc/thread-self/schedstat");
+    let counted = counted.ok().and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
+    counted.map_or(start.elapsed().as_secs_f64(), |nanoseconds| 1e-9 * nanoseconds)
+}
+
+fn main() {
+    let counts: Vec<usize> = match std::env::args().nth(1) {
+        Some(list) => list.split(',').filter_map(|n| n.parse().ok()).collect(),
+        None => vec![1500, 5000],
+    };
+    println!(
+        "| shape | samples | way | balanced | inside | outside | volume | learned in | a query | file | memory |"
+    );
+    println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+    for shape in SHAPES {
+        let mut random = Random(0x9E37_79B9_7F4A_7C15);
+        let share = shape.share(&mut random);
+        let boundary = shape.boundary(30_000, &mut random);
+        let three = boundary.at(&shape, 3f64.to_radians(), 1600, &mut random);
+        for &count in &counts {
+            let samples = shape.samples(count, &mut random);
+            ways(&Asked { shape, share, three: &three, samples: &samples });
+        }
+    }
+}
+
+struct Asked<'a> {
+    shape: Shape,
+    share: f64,
+    three: &'a [(Quat, bool)],
+    samples: &'a [Quat],
+}
+
+impl Asked<'_> {
+    fn accuracy(&self, valid: &dyn Fn(Quat) -> bool) -> [f64; 3] {
+        let (mut good, mut all) = ([0.0; 2], [0.0; 2]);
+        for (q, inside) in self.three {
+            all[usize::from(*inside)] += 1.0;
+            good[usize::from(*inside)] += f64::from(u8::from(valid(*q) == *inside));
+        }
+        let [outside, inside] = [good[0] / all[0], good[1] / all[1]];
+        [0.5 * (outside + inside), inside, outside]
+    }
+
+    fn row(&self, way: &str, seconds: f64, bytes: [usize; 2], valid: &dyn Fn(Quat) -> bool) {
+        let [balanced, inside, outside] = self.accuracy(valid);
+        let even: Vec<Quat> = uniform(20_000).collect();
+        let start = now();
+        let held = even.iter().filter(|q| valid(black_box(**q))).count();
+        let nanoseconds = (now() - start) * 1e9 / even.len() as f64;
+        let volume = held as f64 / even.len() as f64 / self.share;
+        println!(
+            "| {} | {} | {way} | {balanced:.3} | {inside:.3} | {outside:.3} | {volume:.2} | {seconds:.2} s | {nanoseconds:.0} ns | {:.1} kB | {:.0} kB |",
+            self.shape.name,
+            self.samples.len(),
+            bytes[0] as f64 / 1e3,
+            bytes[1] as f64 / 1e3,
+        );
+    }
+}
+
+fn nearest_of(samples: &[Quat], q: Quat, without: usize) -> f64 {
+    let mut best = 0.0f64;
+    for (index, p) in samples.iter().enumerate() {
+        if index != without {
+            best = best.max(q.dot(*p).abs());
+        }
+    }
+    2.0 * best.min(1.0).acos()
+}
+
+/// What samples take in a file (three numbers of 16 bits in base64) and in memory.
+fn of_samples(count: usize) -> [usize; 2] {
+    [8 * count, 32 * count]
+}
+
+/// What spheres take: four numbers of 17 digits each in text, of 8 bytes in memory.
+fn of_spheres(count: usize) -> [usize; 2] {
+    [80 * count, 32 * count]
+}
+
+fn ways(asked: &Asked) {
+    let samples = asked.samples;
+    let start = now();
+    let cloud = Cloud::gather(&[samples], 0.0).expect("samples");
+    let field = learn(&cloud, &Settings::default()).expect("settings");
+    let seconds = now() - start;
+    let nodes = field.ground().settings.nodes.pow(3);
+    // Coefficients of the spline, of a second one where there are holes, and the nearest sample of each node.
+    let splines = if field.learned().holes.is_empty() { 1 } else { 2 };
+    let [file, memory] = of_samples(samples.len());
+    let bytes = [file + 600, memory + 4 * nodes * (splines + 1)];
+    asked.row("closing", seconds, bytes, &|q| field.state(q).0 == State::Valid);
+
+    let start = now();
+    let mut left: Vec<f64> =
+        samples.iter().enumerate().map(|(i, q)| nearest_of(samples, *q, i)).collect();
+    let most = quantile(&mut left, 0.95);
+    let seconds = now() - start;
+    asked.row("nearest", seconds, of_samples(samples.len()), &|q| {
+        nearest_of(samples, q, usize::MAX) <= most
+    });
+
+    let spacing = field.learned().spacing;
+    let start = now();
+    let width = spacing / 2.0;
+    let cell = |q: Quat| {
+        let q = if q.w < 0.0 { -q } else { q };
+        let scale = (2.0 / (1.0 + q.w)).sqrt() / width;
+        [q.x, q.y, q.z].map(|c| (c * scale).floor() as i32)
+    };
+    let held: HashSet<[i32; 3]> = samples.iter().map(|q| cell(*q)).collect();
+    let seconds = now() - start;
+    // A bit for each cell of the cube about the map, whose radius is √2.
+    let bits = (2.0 * 2f64.sqrt() / width).ceil().powi(3) as usize / 8;
+    asked.row("cells", seconds, [bits, bits], &|q| {
+        let [i, j, k] = cell(q);
+        let around =
+            (0..27).filter(|n| held.contains(&[i + n % 3 - 1, j + n / 3 % 3 - 1, k + n / 9 - 1]));
+        held.contains(&[i, j, k]) || around.count() >= 6
+    });
+
+    let start = now();
+    let limit = SphereLimit::learn(samples, cloud.reference(), Options::default()).expect("a fit");
+    let learned_in = now() - start;
+    let count = limit.field.primitives.len();
+    asked.row("spheres", learned_in, of_spheres(count), &|q| limit.allows(q));
+
+    let start = now();
+    let (best, count) = best_spheres(asked, cloud.reference());
+    let seconds = now() - start;
+    asked.row("best spheres", seconds, of_spheres(count), &|q| best(q) >= 1.0);
+
+    let start = now();
+    let chart = limit.chart;
+    let value = |q: Quat| limit.value(q);
+    let taken = negative(samples, &chart, &value, spacing);
+    let seconds = learned_in + now() - start;
+    let count = limit.field.primitives.len() + taken.len();
+    asked.row(&format!("with {} negative", taken.len()), seconds, of_spheres(count), &|q| {
+        value(q) - less(&taken, chart.point(q)) >= 1.0
+    });
+
+    let start = now();
+    let chart = Chart::new(cloud.reference(), Placement::Centred);
+    let taken = negative(samples, &chart, &best, spacing);
+    let seconds = now() - start;
+    asked.row(
+        &format!("best with {} negative", taken.len()),
+        seconds,
+        of_spheres(taken.len()),
+        &|q| best(q) - less(&taken, chart.point(q)) >= 1.0,
+    );
+}
+
+/// Of all stages of both ways to split the one that is best at 3 degrees, and its number of spheres.
+fn best_spheres(asked: &Asked, reference: Quat) -> (impl Fn(Quat) -> f64, usize) {
+    let chart = Chart::new(reference, Placement::Centred);
+    let points: Vec<Vec3> = asked.samples.iter().map(|q| chart.point(*q)).collect();
+    let mut best: Option<(f64, SphereField)> = None;
+    for split in [Split::Two, Split::Six] {
+        let options = Options { split, stable: 0.0, most: 21, ..Options::default() };
+        let fitting = Fitting::new(points.clone(), options).expect("points");
+        for stage in fitting.stages() {
+            let accuracy = asked.accuracy(&|q| stage.field.value(chart.point(q)) >= 1.0)[0];
+            if best.as_ref().is_none_or(|(least, _)| accuracy > *least) {
+                best = Some((accuracy, stage.field));
+            }
+        }
+    }
+    let field = best.expect("a stage").1;
+    let count = field.primitives.len();
+    (move |q| field.value(chart.point(q)), count)
+}
+
+/// A sphere that is taken away.
+struct Negative {
+    centre: Vec3,
+    /// Where its influence ends: at the nearest sample.
+    end: f64,
+    /// By what its field is multiplied.
+    weight: f64,
+}
+
+/// At most so many.
+const MOST: usize = 200;
+
+/// Spheres about places where F ≥ 1 that are farther than two spacings from any sample, the farthest first: half as large as the way
+/// to the nearest sample, where the influence ends, and as strong as the field in their middle.
+fn negative(
+    samples: &[Quat],
+    chart: &Chart,
+    value: &dyn Fn(Quat) -> f64,
+    spacing: f64,
+) -> Vec<Negative> {
+    let points: Vec<Vec3> = samples.iter().map(|q| chart.point(*q)).collect();
+    let mut places: Vec<(f64, Quat)> = uniform(40_000)
+        .filter(|q| value(*q) >= 1.0)
+        .map(|q| (nearest_of(samples, q, usize::MAX), q))
+        .filter(|(angle, _)| *angle > 2.0 * spacing)
+        .collect();
+    places.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut taken: Vec<Negative> = vec![];
+    for (_, q) in places {
+        if taken.len() == MOST {
+            break;
+        }
+        let centre = chart.point(q);
+        if value(q) - less(&taken, centre) < 1.0 {
+            continue;
+        }
+        let end = points.iter().map(|p| (*p - centre).norm()).fold(f64::INFINITY, f64::min);
+        taken.push(Negative { centre, end, weight: value(q) });
+    }
+    taken
+}
+
+fn less(taken: &[Negative], point: Vec3) -> f64 {
+    taken
+        .iter()
+        .map(|n| n.weight * profile((point - n.centre).norm(), 0.5 * n.end, 4.0 / n.end).0)
+        .sum()
+}
