@@ -65,7 +65,7 @@ impl Writer<'_> {
             line!(self, "up = \"z\"");
         }
         if model.facing() != Facing::default() {
-            line!(self, "facing = \"{}\"", model.facing().name());
+            line!(self, "facing = \"{}\"", model.facing().name_in(model.up()));
         }
         for segment in model.segments() {
             self.segment(segment);
