@@ -87,6 +87,23 @@ impl FreeJoint {
         Ok(Affine::from_translation(centre) * Affine::from_rotation(axes))
     }
 
+    /// How far a marker of the joint is from its mean in the standing trial at most, in metres: of a person who stands still
+    /// some millimetres.
+    #[must_use]
+    pub fn unrest(&self, standing: &Recording) -> f64 {
+        let mut most = 0.0f64;
+        for label in self.markers.iter().flatten().chain([&self.origin]).chain(&self.ends) {
+            let Some(mean) = Cluster::standing(standing, &[label]).point(label) else { continue };
+            let Some(marker) = standing.marker(label) else { continue };
+            for frame in 0..standing.frames() {
+                if let Some(place) = standing.position(frame, marker) {
+                    most = most.max((Vec3::from(place) - mean).norm());
+                }
+            }
+        }
+        most
+    }
+
     /// The model: parent and child with their markers where the standing trial has them.
     ///
     /// # Errors

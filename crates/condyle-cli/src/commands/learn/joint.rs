@@ -3,6 +3,7 @@
 use crate::commands::{Outcome, ZerosArgument, zeros};
 use crate::failure::{Failure, warned};
 use crate::output;
+use crate::screen::say;
 use clap::Args;
 use condyle::formats::document;
 use condyle::learn::calibration::FreeJoint;
@@ -55,6 +56,9 @@ pub(super) struct Joint {
     output: PathBuf,
 }
 
+/// Markers of a person who stands move by less, in metres.
+const STILL: f64 = 0.03;
+
 fn segment(text: &str) -> Result<(String, Vec<String>), String> {
     let (name, markers) = text.split_once('=').ok_or("give SEGMENT=M1,M2,...")?;
     let markers: Vec<String> =
@@ -92,6 +96,16 @@ impl Joint {
         let model = joint
             .model(&standing)
             .map_err(|error| Failure::new(format!("{}: {error}", self.trial.display())))?;
+        let unrest = joint.unrest(&standing);
+        if unrest > STILL {
+            let message = format!(
+                "warning: {}: markers are up to {:.0} mm from their means: the person does not stand still, and the model is \
+                 that of no moment",
+                self.trial.display(),
+                1e3 * unrest
+            );
+            say(&message);
+        }
         output::write(&self.output, document::write(&model).as_bytes())?;
         Ok(Outcome::Done)
     }
