@@ -1,6 +1,7 @@
 //! `condyle learn`: models from recordings: limits of joints, and laws that couple coordinates.
 
 mod coupling;
+mod joint;
 
 use super::{Angles, Outcome, ZerosArgument, zeros};
 use crate::failure::{Failure, warn_about, warned};
@@ -28,6 +29,8 @@ enum What {
     Limits(Box<Limits>),
     /// Learn how coordinates follow others, from trials.
     Coupling(Box<coupling::Coupling>),
+    /// Make a model with a free joint from a standing trial.
+    Joint(Box<joint::Joint>),
 }
 
 /// How a limit is learned.
@@ -102,6 +105,7 @@ impl Learn {
         match self.what {
             What::Limits(limits) => limits.run(),
             What::Coupling(coupling) => coupling.run(),
+            What::Joint(joint) => joint.run(),
         }
     }
 }

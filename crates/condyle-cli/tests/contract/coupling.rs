@@ -124,3 +124,98 @@ fn one_trial_is_told() {
     assert!(run.err.contains("there is one trial"), "{}", run.err);
     assert!(run.expect(0).contains("kind = \"law\""));
 }
+
+/// Seven markers of a leg in millimetres, as a person stands.
+fn standing() -> String {
+    let markers = [
+        ("RGT", "20\t900\t170"),
+        ("RLFE", "10\t480\t140"),
+        ("RMFE", "0\t470\t50"),
+        ("RTT", "60\t410\t100"),
+        ("RFH", "-30\t420\t150"),
+        ("RMEDMAL", "-10\t80\t60"),
+        ("RLATMAL", "-30\t70\t130"),
+    ];
+    let names: Vec<&str> = markers.iter().map(|(name, _)| *name).collect();
+    let places: Vec<&str> = markers.iter().map(|(_, place)| *place).collect();
+    let columns: Vec<String> = (1..=7).map(|k| format!("X{k}\tY{k}\tZ{k}")).collect();
+    let (names, places, columns) = (names.join("\t\t\t"), places.join("\t"), columns.join("\t"));
+    format!(
+        "PathFileType\t4\t(X/Y/Z)\tstanding.trc\n\
+         DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames\n\
+         100\t100\t2\t7\tmm\t100\t1\t2\nFrame#\tTime\t{names}\n\t\t{columns}\n\n\
+         1\t0.00\t{places}\n2\t0.01\t{places}\n"
+    )
+}
+
+/// From a standing trial a model with a free knee, from gaits tracked with it the law, from the law a model that follows it.
+#[test]
+fn a_knee_is_calibrated_tracked_and_learned() {
+    let folder = Folder::new("coupling-knee");
+    folder.write("standing.trc", standing());
+    folder.condyle(&["learn", "joint", "standing.trc", "-o", "leg.toml"]).expect(0);
+    // All angles are 0 while the person stands, so the tracked standing trial has the defaults.
+    let mut names = vec![];
+    for trial in 0..5 {
+        let columns = [
+            "time",
+            "thigh_r_rz",
+            "knee_r_flexion",
+            "knee_r_adduction",
+            "knee_r_rotation",
+            "knee_r_tx",
+            "knee_r_ty",
+            "knee_r_tz",
+        ];
+        let mut text = format!(
+            "g\nversion=1\nnRows=50\nnColumns=8\ninDegrees=no\nendheader\n{}\n",
+            columns.join("\t")
+        );
+        for frame in 0..50 {
+            let t = 0.12 * f64::from(frame) + f64::from(trial);
+            let (a, b, c) = (-0.5 - 0.4 * t.sin(), 0.05 * (1.9 * t).sin(), 0.1 * (2.3 * t).cos());
+            let cells = [
+                0.01 * f64::from(frame),
+                0.3 * (0.9 * t).sin(),
+                a,
+                b,
+                c,
+                0.01 + 0.035 * a - 0.01 * b,
+                -0.42 + 0.008 * a,
+                0.015 * c,
+            ];
+            let _ = writeln!(text, "{}", cells.map(|x| x.to_string()).join("\t"));
+        }
+        let (motion, markers) = (format!("gait_{trial}.mot"), format!("gait_{trial}.trc"));
+        folder.write(&motion, text);
+        folder.condyle(&["convert", &motion, &markers, "--model", "leg.toml"]).expect(0);
+        names.push(markers);
+    }
+    let more = ["--model", "leg.toml", "--joint", "knee_r", "--apply", "law.toml"];
+    let report = learned(&folder, &names, &more);
+    let expected = ["knee_r_flexion", "knee_r_adduction", "knee_r_rotation"];
+    assert_eq!(report["control"], serde_json::json!(expected));
+    // What is left is the rounding of the files and the stop of the solver: far below the 10 % of the issue.
+    for (dependent, truth) in [
+        ("knee_r_tx", [0.01, 0.035, -0.01, 0.0]),
+        ("knee_r_ty", [-0.42, 0.008, 0.0, 0.0]),
+        ("knee_r_tz", [0.0, 0.0, 0.0, 0.015]),
+    ] {
+        let law = law(&report, dependent);
+        near(number(&law["intercept"]), truth[0], 1e-5);
+        for (name, slope) in expected.iter().zip(&truth[1..]) {
+            near(number(&law["slopes"][name]), *slope, 1e-4);
+        }
+        assert_eq!(law["accepted"], true);
+    }
+    // The learned knee tracks as the free one does, with three coordinates fewer.
+    let run = folder.condyle(&["track", "law.toml", "gait_0.trc", "-o", "again.mot", "--json"]);
+    let tracked = run.json();
+    assert!(number(&tracked["rms_m"]) < 1e-5, "{}", tracked["rms_m"]);
+    // The same gait is where the law was learned; a knee bent farther is not.
+    folder.condyle(&["check", "law.toml", "again.mot"]).expect(0);
+    folder.write("far.json", "[{ \"knee_r_flexion\": -1.6 }]");
+    let run = folder.condyle(&["check", "law.toml", "far.json", "--json"]);
+    let said: Value = serde_json::from_str(&run.expect(1)).expect("JSON");
+    assert_eq!(said["motion"]["extrapolated"].as_array().map(Vec::len), Some(3));
+}
