@@ -11,7 +11,7 @@
 //! | nearest | valid within the angle of a sample that 95 % of samples have to their nearest |
 //! | cells | a grid of cells as wide as a spacing that hold a sample or touch six that do |
 //! | spheres | Herda et al. 2003, centred, with the default stop |
-//! | best spheres | of its stages, split into six and into two, the one with the best accuracy: the truth is looked at |
+//! | best spheres | of its stages, centred and as recorded, split into six and into two, the one with the best accuracy: the truth is looked at |
 //! | with negative | `spheres`, and spheres taken away where F ≥ 1 and no sample is near |
 
 #[path = "../tests/field/shapes.rs"]
@@ -170,7 +170,9 @@ fn ways(asked: &Asked) {
     asked.row("spheres", learned_in, of_spheres(count), &|q| limit.allows(q));
 
     let start = now();
-    let (best, best_count) = best_spheres(asked, cloud.reference());
+    let (best_chart, field) = best_spheres(asked, cloud.reference());
+    let best_count = field.primitives.len();
+    let best = |q: Quat| field.value(best_chart.point(q));
     let seconds = now() - start;
     asked.row("best spheres", seconds, of_spheres(best_count), &|q| best(q) >= 1.0);
 
@@ -185,35 +187,35 @@ fn ways(asked: &Asked) {
     });
 
     let start = now();
-    let chart = Chart::new(cloud.reference(), Placement::Centred);
-    let taken = negative(samples, &chart, &best, spacing);
+    let taken = negative(samples, &best_chart, &best, spacing);
     let seconds = now() - start;
     asked.row(
         &format!("best with {} negative", taken.len()),
         seconds,
         of_spheres(best_count + taken.len()),
-        &|q| best(q) - less(&taken, chart.point(q)) >= 1.0,
+        &|q| best(q) - less(&taken, best_chart.point(q)) >= 1.0,
     );
 }
 
-/// Of all stages of both ways to split the one that is best at 3 degrees, and its number of spheres.
-fn best_spheres(asked: &Asked, reference: Quat) -> (impl Fn(Quat) -> f64, usize) {
-    let chart = Chart::new(reference, Placement::Centred);
-    let points: Vec<Vec3> = asked.samples.iter().map(|q| chart.point(*q)).collect();
-    let mut best: Option<(f64, SphereField)> = None;
-    for split in [Split::Two, Split::Six] {
-        let options = Options { split, stable: 0.0, most: 21, ..Options::default() };
-        let fitting = Fitting::new(points.clone(), options).expect("points");
-        for stage in fitting.stages() {
-            let accuracy = asked.accuracy(&|q| stage.field.value(chart.point(q)) >= 1.0)[0];
-            if best.as_ref().is_none_or(|(least, _)| accuracy > *least) {
-                best = Some((accuracy, stage.field));
+/// Of all stages of both ways to split, centred and as recorded, the one that is best at 3 degrees.
+fn best_spheres(asked: &Asked, reference: Quat) -> (Chart, SphereField) {
+    let mut best: Option<(f64, Chart, SphereField)> = None;
+    for placement in [Placement::Centred, Placement::AsRecorded] {
+        let chart = Chart::new(reference, placement);
+        let points: Vec<Vec3> = asked.samples.iter().map(|q| chart.point(*q)).collect();
+        for split in [Split::Two, Split::Six] {
+            let options = Options { split, stable: 0.0, most: 21, ..Options::default() };
+            let fitting = Fitting::new(points.clone(), options).expect("points");
+            for stage in fitting.stages() {
+                let accuracy = asked.accuracy(&|q| stage.field.value(chart.point(q)) >= 1.0)[0];
+                if best.as_ref().is_none_or(|(least, ..)| accuracy > *least) {
+                    best = Some((accuracy, chart, stage.field));
+                }
             }
         }
     }
-    let field = best.expect("a stage").1;
-    let count = field.primitives.len();
-    (move |q| field.value(chart.point(q)), count)
+    let (_, chart, field) = best.expect("a stage");
+    (chart, field)
 }
 
 /// A sphere that is taken away.
