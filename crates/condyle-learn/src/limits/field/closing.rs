@@ -55,7 +55,7 @@ pub(super) fn closing(ground: &Ground, lattice: &Lattice) -> Closing {
 
     let mut spacing = typical_spacing(&samples);
     let [least, most] = settings.radius;
-    let mut ball = (5.0 * spacing).clamp(least, most);
+    let mut ball = (crate::limits::lab::get(3, 5.0) * spacing).clamp(least, crate::limits::lab::get(4, most));
     if let Some(known) = known {
         (spacing, ball) = (known.spacing, known.radius);
     }
@@ -63,7 +63,7 @@ pub(super) fn closing(ground: &Ground, lattice: &Lattice) -> Closing {
     for _ in 0..if known.is_some() { 0 } else { 2 } {
         let volume = volume(&nodes, &inner);
         spacing = (volume / samples.len() as f64).cbrt().clamp(1e-4, 1.0);
-        let better = (5.0 * spacing).clamp(least, most);
+        let better = (crate::limits::lab::get(3, 5.0) * spacing).clamp(least, crate::limits::lab::get(4, most));
         if (better / ball - 1.0).abs() < 0.05 {
             break;
         }
@@ -71,6 +71,7 @@ pub(super) fn closing(ground: &Ground, lattice: &Lattice) -> Closing {
         inner = inside(&nodes, &near, ball);
     }
 
+    if crate::limits::lab::get(20, 0.0) > 0.0 { super::features::export(&nodes, &near, &inner, &samples, spacing, chart); }
     let bare = outward(&nodes, &inner, &samples, |_| 0.0, &near);
     let (bare_volume, surface) = (volume(&nodes, &inner), surface(&nodes, &bare));
     let extremes = extremes(&nodes, &near, &points, ball);
@@ -86,9 +87,19 @@ pub(super) fn closing(ground: &Ground, lattice: &Lattice) -> Closing {
         None => 0.0,
     };
     let gap_at = |sample: u32| gap * local.get(sample as usize).copied().unwrap_or(1.0);
-    let mut outer = outward(&nodes, &inner, &samples, gap_at, &near);
-    if surface > 0.0 {
-        outer = evened(&nodes, &outer, spacing);
+    let mut outer;
+    if crate::limits::lab::get(8, 1.0) == 0.0 {
+        outer = outward(&nodes, &inner, &samples, gap_at, &near);
+        if surface > 0.0 {
+            outer = evened(&nodes, &outer, spacing);
+        }
+    } else {
+        let mut depth: Vec<f32> =
+            inner.iter().zip(&near.ball).map(|(d, sample)| d + gap_at(*sample) as f32).collect();
+        if surface > 0.0 {
+            depth = evened(&nodes, &depth, spacing);
+        }
+        outer = outward(&nodes, &depth, &samples, |s| if s == u32::MAX - 1 { 0.0 } else { 0.5 * gap_at(s) }, &near);
     }
     let total = volume(&nodes, &outer);
 
@@ -149,12 +160,12 @@ pub(super) fn between(q: Quat, p: Quat, part: f64) -> Quat {
     Quat::from(std::array::from_fn(|i| q[i] + part * (p[i] - q[i]))).normalized()
 }
 
-fn seeds<'a>(lattice: &'a Lattice, at: &'a [Quat]) -> impl Iterator<Item = (usize, u32)> + 'a {
+pub(super) fn seeds<'a>(lattice: &'a Lattice, at: &'a [Quat]) -> impl Iterator<Item = (usize, u32)> + 'a {
     (0u32..).zip(at).flat_map(|(index, q)| lattice.around(*q).map(move |node| (node, index)))
 }
 
 /// Distances from inside to the closing by balls of a radius or more.
-fn inside(nodes: &Nodes<'_>, near: &Nearest, radius: f64) -> Vec<f32> {
+pub(super) fn inside(nodes: &Nodes<'_>, near: &Nearest, radius: f64) -> Vec<f32> {
     let (mut balls, mut at) = (vec![], vec![]);
     for (node, q) in nodes.rotations.iter().enumerate() {
         let (Some(q), value) = (q, near.value[node]) else { continue };
@@ -188,7 +199,7 @@ fn outward(
     at.extend(seeds(nodes.lattice, samples));
     for (node, q) in nodes.rotations.iter().enumerate() {
         let Some(q) = q else { continue };
-        let depth = f64::from(inner[node]) + gap(near.ball[node]);
+        let depth = f64::from(inner[node]) + if crate::limits::lab::get(8, 1.0) == 0.0 || gap(near.ball[node]) == 0.0 { gap(near.ball[node]) } else { 0.0 };
         if depth >= 0.0 {
             at.push((node, balls.len() as u32));
             balls.push(Ball::new(*q, depth));

@@ -42,21 +42,22 @@ pub(super) fn thickness(
     };
     // To 2⁻¹⁴ of the most: far below a thousandth of the volume.
     let gap = halved(0.0, most, 14, |gap| with(gap) < target);
-    SHARE * gap
+    crate::limits::lab::get(2, SHARE) * gap
 }
 
 /// Signed distances whose zero set is evened out over half a spacing and encloses the same volume.
 pub(super) fn evened(nodes: &Nodes<'_>, distance: &[f32], spacing: f64) -> Vec<f32> {
-    let sigma = EVEN * spacing / nodes.lattice.angle();
+    if crate::limits::lab::get(8, 1.0) > 0.0 { return super::even::evened(nodes, distance, spacing) }
+    let sigma = crate::limits::lab::get(0, EVEN) * spacing / nodes.lattice.angle();
     // A pass has the variance of half a step²; the most is a deviation of 4.5 steps.
-    let passes = ((2.0 * sigma * sigma).round() as usize).min(40);
+    let passes = ((2.0 * sigma * sigma).round() as usize).min(400);
     if passes == 0 {
         return distance.to_vec();
     }
     let total = volume(nodes, distance);
     let mut even = smoothed(nodes.lattice, distance, passes);
     let again = smoothed(nodes.lattice, &even, passes);
-    even.iter_mut().zip(again).for_each(|(once, twice)| *once += EDGES * (*once - twice));
+    even.iter_mut().zip(again).for_each(|(once, twice)| *once += (crate::limits::lab::get(1, f64::from(EDGES)) as f32) * (*once - twice));
     let moved =
         |by: f64| sum(nodes, even.iter().map(|d| d + by as f32), |d| share(nodes, d)) < total;
     let by = halved(-0.3, 0.3, 14, moved) as f32;
@@ -65,7 +66,7 @@ pub(super) fn evened(nodes: &Nodes<'_>, distance: &[f32], spacing: f64) -> Vec<f
 }
 
 /// The middle of what is left of an interval after halving it towards where `below` ends.
-fn halved(mut low: f64, mut high: f64, times: usize, below: impl Fn(f64) -> bool) -> f64 {
+pub(super) fn halved(mut low: f64, mut high: f64, times: usize, below: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..times {
         let middle = 0.5 * (low + high);
         if below(middle) { low = middle } else { high = middle }
@@ -74,7 +75,7 @@ fn halved(mut low: f64, mut high: f64, times: usize, below: impl Fn(f64) -> bool
 }
 
 /// Weights 1, 2, 1 along each axis, so many times; what has no two neighbours is kept.
-fn smoothed(lattice: &Lattice, values: &[f32], passes: usize) -> Vec<f32> {
+pub(super) fn smoothed(lattice: &Lattice, values: &[f32], passes: usize) -> Vec<f32> {
     let mut from = values.to_vec();
     let mut to = from.clone();
     for _ in 0..passes {
@@ -94,7 +95,7 @@ fn smoothed(lattice: &Lattice, values: &[f32], passes: usize) -> Vec<f32> {
     from
 }
 
-fn share(nodes: &Nodes<'_>, distance: f64) -> f64 {
+pub(super) fn share(nodes: &Nodes<'_>, distance: f64) -> f64 {
     (distance / nodes.lattice.angle() + 0.5).clamp(0.0, 1.0)
 }
 
@@ -109,7 +110,7 @@ pub(super) fn surface(nodes: &Nodes<'_>, distance: &[f32]) -> f64 {
     sum(nodes, distance.iter().copied(), |d| (1.0 - (d / half).abs()).max(0.0) / half)
 }
 
-fn sum(nodes: &Nodes<'_>, distance: impl Iterator<Item = f32>, weight: impl Fn(f64) -> f64) -> f64 {
+pub(super) fn sum(nodes: &Nodes<'_>, distance: impl Iterator<Item = f32>, weight: impl Fn(f64) -> f64) -> f64 {
     nodes
         .rotations
         .iter()

@@ -9,6 +9,8 @@
 
 mod axes;
 mod closing;
+mod features;
+mod even;
 mod layer;
 mod nearest;
 
