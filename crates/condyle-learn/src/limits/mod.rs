@@ -21,14 +21,3 @@ pub use cloud::{Cloud, Gathered, SPACING};
 pub use field::{About, Answer, Field, LearnedLimit, Settings, State, learn};
 pub use left_out::{LeftOut, independent, left_out, percentile};
 pub use uniform::uniform;
-
-#[doc(hidden)]
-pub mod lab {
-    use std::sync::RwLock;
-    pub static P: RwLock<[f64; 24]> = RwLock::new([f64::NAN; 24]);
-    pub static OUT: std::sync::Mutex<Option<(Vec<[f32; 20]>, Vec<condyle_math::Quat>)>> = std::sync::Mutex::new(None);
-    pub fn get(i: usize, default: f64) -> f64 {
-        let v = P.read().unwrap()[i];
-        if v.is_nan() { default } else { v }
-    }
-}

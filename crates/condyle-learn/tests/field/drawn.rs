@@ -24,14 +24,17 @@ pub(crate) const UNSEEN: [Shape; 4] = [
 static SETS: LazyLock<[Drawn; 8]> = LazyLock::new(|| std::array::from_fn(drawn));
 
 /// A set with between 3 and 35 % of all rotations.
-pub(crate) fn drawn(number: usize) -> Drawn {
+fn drawn(number: usize) -> Drawn {
     let mut random = Random(0x5DEE_CE66_D1CE_4E5B ^ (number as u64 + 1) << 40);
     loop {
         let set = Drawn {
             kind: number % 4,
             boxes: std::array::from_fn(|_| Angles::drawn(&mut random)),
             cones: std::array::from_fn(|_| Cone::drawn(&mut random)),
-            ball: (Quat::exp(random.direction() * (0.3 + 0.9 * random.unit())), 0.7 + 0.4 * random.unit()),
+            ball: (
+                Quat::exp(random.direction() * (0.3 + 0.9 * random.unit())),
+                0.7 + 0.4 * random.unit(),
+            ),
             sheet: Sheet::drawn(&mut random),
         };
         let share = (0..4000).filter(|_| set.holds(random.rotation())).count() as f64 / 4000.0;
@@ -41,7 +44,7 @@ pub(crate) fn drawn(number: usize) -> Drawn {
     }
 }
 
-pub(crate) struct Drawn {
+struct Drawn {
     kind: usize,
     boxes: [Angles; 2],
     cones: [Cone; 2],
@@ -50,7 +53,7 @@ pub(crate) struct Drawn {
 }
 
 impl Drawn {
-    pub(crate) fn holds(&self, q: Quat) -> bool {
+    fn holds(&self, q: Quat) -> bool {
         let [one, other] = &self.boxes;
         let [wide, notch] = &self.cones;
         match self.kind {
@@ -125,7 +128,8 @@ impl Sheet {
         let tip = q.to_mat3() * Vec3::Z;
         let [(a, s), (b, t)] = self.waves;
         let middle = a * (2.0 * tip.x + s).sin() + b * (2.5 * tip.y + t).sin();
-        let off = (twist - middle + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
+        let off = (twist - middle + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU)
+            - std::f64::consts::PI;
         swing <= self.swing && off.abs() <= self.half
     }
 }

@@ -53,7 +53,6 @@ pub(super) struct Nodes<'a> {
     pub(super) rotations: &'a [Option<Quat>],
     /// Nodes of use, in rising order, with what is needed of each.
     pub(super) used: Vec<(u32, [f32; 4])>,
-    pub(super) small: Vec<Option<[f32; 4]>>,
     /// Those that are in the map twice, with the nodes about the other place.
     seam: Vec<(u32, [f32; 4], [usize; 8])>,
 }
@@ -70,8 +69,7 @@ impl<'a> Nodes<'a> {
                 seam.push((index, small, lattice.corners(-*q)));
             }
         }
-        let small = rotations.iter().map(|q| q.map(|q| q.to_array().map(|c| c as f32))).collect();
-        Self { lattice, rotations, used, small, seam }
+        Self { lattice, rotations, used, seam }
     }
 
     /// The nearest of balls. `seeds` are (node, ball) to begin with.
