@@ -86,7 +86,8 @@ pub(super) fn closing(ground: &Ground, lattice: &Lattice) -> Closing {
     for _ in 0..if settings.gap.is_none() { 2 } else { 0 } {
         // What is sparse is held better once its balls are larger.
         let Some(found) = density::scales(&nodes, &inner, &samples, spacing) else { break };
-        let radius = |sample: u32| (5.0 * spacing * scale_of(Some(&found), sample)).clamp(least, most);
+        let radius =
+            |sample: u32| (5.0 * spacing * scale_of(Some(&found), sample)).clamp(least, most);
         inner = inside(&nodes, &near, radius);
         scales = Some(found);
     }
@@ -144,8 +145,7 @@ pub(super) fn closing(ground: &Ground, lattice: &Lattice) -> Closing {
     }
     let total = volume(&nodes, &outer);
 
-    let spacing_at =
-        |sample: u32| spacing * scale(sample).max(1.0);
+    let spacing_at = |sample: u32| spacing * scale(sample).max(1.0);
     let holes = hollow(&nodes, &near, &inner, settings, spacing_at, gap_at);
     let (carved, hollow_volume, holes) = match holes {
         None => (None, 0.0, vec![]),
