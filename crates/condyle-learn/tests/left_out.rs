@@ -28,9 +28,9 @@ fn a_limit_holds_nineteen_of_twenty_rotations_of_takes_that_it_has_not_seen() {
     let settings = Settings { nodes: 48, ..Settings::default() };
     let left = left_out(&slices, SPACING, &settings).unwrap();
     assert!(left.whole_takes && left.parts == 6);
-    // 95 % of those that were left out, to one of several thousand.
-    assert!((left.held(left.gap) - 0.95).abs() < 2e-3, "{}", left.held(left.gap));
-    assert!(left.reaching(0.5) < left.gap && left.gap <= 15f64.to_radians());
+    // 95 % of those that were left out, or more where the least offset, of two degrees, holds more.
+    assert!(left.held(left.gap) > 0.948, "{}", left.held(left.gap));
+    assert!(left.reaching(0.5) <= left.gap && left.gap <= 15f64.to_radians());
     let cloud = Cloud::gather(&slices, SPACING).unwrap();
     let bare = learn(&cloud, &Settings { gap: Some(0.0), ..settings }).unwrap();
     let field = learn(&cloud, &left.settings(&settings)).unwrap();
@@ -39,7 +39,12 @@ fn a_limit_holds_nineteen_of_twenty_rotations_of_takes_that_it_has_not_seen() {
         new.iter().filter(|q| field.outer_distance(**q) >= 0.0).count() as f64 / new.len() as f64
     };
     // Frames that are not thinned, of other takes.
-    assert!(inside(&field) > 0.93 && inside(&bare) < inside(&field), "{} {}", inside(&bare), inside(&field));
+    assert!(
+        inside(&field) > 0.93 && inside(&bare) < inside(&field),
+        "{} {}",
+        inside(&bare),
+        inside(&field)
+    );
     // All turn by less than 60 degrees: what turns by 60 and the offset, and a step of the lattice, is outside.
     let far = 60f64.to_radians() + left.gap + 0.1;
     for axis in Vec3::UNITS {
