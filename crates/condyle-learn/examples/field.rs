@@ -2,8 +2,8 @@
 //!
 //! | part | what |
 //! | --- | --- |
-//! | `accuracy`, `aside` | of six shapes, of six others: balanced accuracy at true distances of 2 and 3 degrees, volume over the true one, how far the nearest rotation is from the true boundary and how wrong the distance is (median and 99th percentile, up to 10 degrees outside) |
-//! | `disturbed` | accuracy with noise of 1 and 2 degrees about each axis, and with one half 12 times as dense as the other |
+//! | `accuracy`, `aside`, `drawn`, `unseen` | of six shapes, of six others, of four drawn at random, of four more that were kept aside: balanced accuracy at true distances of 2 and 3 degrees, volume over the true one, how far the nearest rotation is from the true boundary and how wrong the distance is (median and 99th percentile, up to 10 degrees outside) |
+//! | `disturbed`, `disturbed-unseen` | accuracy with noise of 1 and 2 degrees about each axis, and with one half 12 times as dense as the other |
 //! | `projection` | nearest rotations beside the best of 100 000 places on the field's own boundary |
 //! | `compare` | the same samples by a threshold on the distance to the nearest sample, set by leaving samples out, and by cells of a grid |
 //! | `speed` | nanoseconds of a query, seconds of learning |
@@ -11,6 +11,9 @@
 #[path = "../tests/field/shapes.rs"]
 #[allow(dead_code, reason = "what only tests ask for")]
 mod shapes;
+
+#[path = "../tests/field/drawn.rs"]
+mod drawn;
 
 use condyle_learn::limits::{Cloud, Field, Settings, State, learn};
 use condyle_math::{Quat, Vec3};
@@ -28,16 +31,20 @@ fn main() {
     match part {
         "accuracy" => accuracies(&SHAPES, &counts, &[("", 0.0, 1.0)]),
         "aside" => accuracies(&ASIDE, &counts, &[("", 0.0, 1.0)]),
-        "disturbed" => {
-            let kinds = [("noise 1", 1.0, 1.0), ("noise 2", 2.0, 1.0), ("12 to 1", 0.0, 12.0)];
-            accuracies(&SHAPES, &counts, &kinds);
-        }
+        "drawn" => accuracies(&drawn::SEEN, &counts, &[("", 0.0, 1.0)]),
+        "unseen" => accuracies(&drawn::UNSEEN, &counts, &[("", 0.0, 1.0)]),
+        "disturbed" => accuracies(&SHAPES, &counts, &DISTURBED),
+        "disturbed-unseen" => accuracies(&drawn::UNSEEN, &counts, &DISTURBED),
         "projection" => projection(&SHAPES),
         "compare" => compare(&counts),
         "speed" => speed(),
         _ => eprintln!("error: there is no part {part}"),
     }
 }
+
+/// A name, noise in degrees, how many times denser one side is.
+const DISTURBED: [(&str, f64, f64); 3] =
+    [("noise 1", 1.0, 1.0), ("noise 2", 2.0, 1.0), ("12 to 1", 0.0, 12.0)];
 
 fn learned(samples: &[Quat]) -> Field {
     let cloud = Cloud::gather(&[samples], 0.0).expect("samples");

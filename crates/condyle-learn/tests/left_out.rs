@@ -2,7 +2,6 @@
 
 use condyle_learn::limits::{Cloud, SPACING, Settings, independent, learn, left_out};
 use condyle_math::{Quat, Vec3};
-use std::f64::consts::PI;
 
 /// Turns by less than 60 degrees, as a person goes around in them for a take: along a curve whose three numbers move at
 /// rates without a common measure, bent at the ball.
@@ -22,21 +21,35 @@ fn take(number: usize) -> Vec<Quat> {
 }
 
 #[test]
-fn the_layer_from_left_out_takes_makes_up_for_what_curves_miss() {
+fn a_limit_holds_nineteen_of_twenty_rotations_of_takes_that_it_has_not_seen() {
     let takes: Vec<Vec<Quat>> = (0..6).map(take).collect();
     let slices: Vec<&[Quat]> = takes.iter().map(Vec::as_slice).collect();
     assert!(slices.iter().all(|take| !independent(take)));
     let settings = Settings { nodes: 48, ..Settings::default() };
     let left = left_out(&slices, SPACING, &settings).unwrap();
     assert!(left.whole_takes && left.parts == 6);
+    // 95 % of those that were left out, or more where the least offset, of two degrees, holds more.
+    assert!(left.held(left.gap) > 0.948, "{}", left.held(left.gap));
+    assert!(left.reaching(0.5) <= left.gap && left.gap <= 15f64.to_radians());
     let cloud = Cloud::gather(&slices, SPACING).unwrap();
-    let share = |settings: &Settings| learn(&cloud, settings).unwrap().learned().valid;
-    // (θ - sin θ)/π of all rotations turn by less than θ.
-    let truth = (PI / 3.0 - (PI / 3.0).sin()) / PI;
-    let bare = share(&Settings { gap: Some(0.0), ..settings });
-    let found = share(&left.settings(&settings));
-    assert!(bare < truth, "{bare} {truth}");
-    assert!((found - truth).abs() < (bare - truth).abs(), "{bare} {found} {truth}");
+    let bare = learn(&cloud, &Settings { gap: Some(0.0), ..settings }).unwrap();
+    let field = learn(&cloud, &left.settings(&settings)).unwrap();
+    let new: Vec<Quat> = (40..46).flat_map(take).collect();
+    let inside = |field: &condyle_learn::limits::Field| {
+        new.iter().filter(|q| field.outer_distance(**q) >= 0.0).count() as f64 / new.len() as f64
+    };
+    // Frames that are not thinned, of other takes.
+    assert!(
+        inside(&field) > 0.93 && inside(&bare) < inside(&field),
+        "{} {}",
+        inside(&bare),
+        inside(&field)
+    );
+    // All turn by less than 60 degrees: what turns by 60 and the offset, and a step of the lattice, is outside.
+    let far = 60f64.to_radians() + left.gap + 0.1;
+    for axis in Vec3::UNITS {
+        assert!(field.distance(Quat::from_axis_angle(axis, far)) < 0.0);
+    }
     // More is held with a thicker layer, all with a thick one, and outside + inside are everything.
     assert!((left.held(0.0) + left.outside - 1.0).abs() < 1e-12);
     assert!(left.held(left.gap) >= left.held(0.0) && left.held(1.0) == 1.0);

@@ -70,6 +70,9 @@ struct Limits {
     /// How far the limit goes beyond what was recorded, in degrees; without it, takes that are left out tell.
     #[arg(long, value_name = "DEG", value_parser = angle)]
     offset: Option<f64>,
+    /// The share of the rotations of left-out takes that the limit must hold, as far as 15 degrees beyond the others do; without it, 0.95.
+    #[arg(long, value_name = "SHARE", value_parser = share, conflicts_with = "offset")]
+    cover: Option<f64>,
     /// The least angle between two rotations that are kept, in degrees; without it, 2 along the curves of recordings, and 0 of
     /// rotations that are independent of each other.
     #[arg(long, value_name = "DEG", value_parser = angle)]
@@ -98,6 +101,11 @@ struct Limits {
 fn angle(text: &str) -> Result<f64, String> {
     let degrees = text.parse().ok().filter(|d: &f64| (0.0..=57.0).contains(d));
     degrees.map(f64::to_radians).ok_or_else(|| "give degrees, from 0 to 57".to_owned())
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let share = text.parse().ok().filter(|share: &f64| (0.5..=1.0).contains(share));
+    share.ok_or_else(|| "give a share, from 0.5 to 1".to_owned())
 }
 
 impl Learn {
@@ -142,7 +150,12 @@ impl Limits {
         }
         let name = self.output.file_stem().unwrap_or_default().to_string_lossy();
         let name = if to_screen { "" } else { name.as_ref() };
-        let how = How { spacing: self.spacing, offset: self.offset, settings: Settings::default() };
+        let how = How {
+            spacing: self.spacing,
+            offset: self.offset,
+            cover: self.cover,
+            settings: Settings::default(),
+        };
         let started = std::time::Instant::now();
         let (document, text, report) = match self.method {
             Method::Closing => {

@@ -2,26 +2,30 @@
 //!
 //! Frames of a recording lie along curves: the nearest other sample is the frame before, and tells nothing about
 //! how well the whole is known. So whole takes (or, of few takes, blocks of time) are left out in turn, and the
-//! closing C of the others is asked about them. With p the share of left-out rotations outside C, V and S the
-//! volume and the surface of C of all takes, the layer about C has the thickness
+//! closing C of the others is asked about them. The limit goes as far beyond C as it takes to hold 95 of 100
+//! rotations of what was left out: that is what the next recording may be expected to show.
 //!
-//! ```text
-//! gap = p V / S
-//! ```
+//! Of turns that no other take comes near that would be half of all rotations; so it is at most 15 degrees, and what is 20 degrees from
+//! every sample stays outside. It is at least the spacing to which frames were thinned, so that frames between samples are inside.
 //!
-//! as if p of the volume were missed all around; for independent samples it is what leaving single samples out
-//! gives. It is no thicker than what holds 95 % of the left-out
-//! rotations, at least the spacing to which frames were thinned, so that frames between samples are inside, and at
-//! least so thick that half of the left-out rotations are: of turns about one or two axes V is 0. What lies farther from all samples than 95 % of the left-out rotations inside C did is a hole.
+//! The share that misses of the volume, p V / S as for independent samples, is a third to a half of that: it holds what these takes
+//! show all over again, but of another person half and less.
+//!
+//! What lies farther from all samples than 95 % of the left-out rotations inside C did is a hole.
 
 use super::{Cloud, Settings, learn};
 use condyle_diagnostics::Error;
 use condyle_math::Quat;
+use std::f64::consts::PI;
 
 /// Parts that are left out in turn, unless there are as many takes.
 const PARTS: usize = 8;
 /// No more than this, whatever the number of takes.
 const MOST: usize = 12;
+/// The share of left-out rotations that a limit holds, unless another is asked for.
+pub const COVER: f64 = 0.95;
+/// The most that a limit goes beyond recordings: 15 degrees.
+const FARTHEST: f64 = PI / 12.0;
 /// Nodes of the fields of parts: neighbours are 5.6 degrees apart.
 const NODES: usize = 64;
 
@@ -40,8 +44,10 @@ pub struct LeftOut {
     pub distances: Vec<f64>,
     /// The angle to the nearest sample of the others of those that are inside, in radians, rising.
     pub nearest: Vec<f64>,
-    /// The thickness of the layer that follows, in radians.
+    /// How far the limit goes beyond the closing, in radians: [`LeftOut::reaching`] 95 %.
     pub gap: f64,
+    /// It goes at least so far, in radians: what samples are apart.
+    pub least: f64,
     /// (volume / number)^(1/3) of all samples, in radians.
     pub spacing: f64,
     /// From what distance to the nearest sample on a place inside is a hole, in radians.
@@ -118,15 +124,8 @@ pub fn left_out(takes: &[&[Quat]], spacing: f64, settings: &Settings) -> Result<
     let learned = whole.learned();
     let outside = distances.iter().filter(|d| **d < 0.0).count() as f64;
     let outside = outside / distances.len().max(1) as f64;
-    let volume = learned.outer * 8.0 * std::f64::consts::PI.powi(2);
-    let gap = if learned.surface > 0.0 { outside * volume / learned.surface } else { 0.0 };
-    // Distances rise, so that half of them are at least the middle one.
-    let half = -percentile(&distances, 0.5);
-    // Who moves along the boundary shows more of it than of the inside: p is then no share of a volume, and the layer no
-    // thicker than what holds nearly all.
-    let gap = gap.min(-percentile(&distances, 0.05)).max(half).max(spacing);
     let [size, _] = settings.hole.or(Settings::default().hole).unwrap_or([2.5, 2.0]);
-    Ok(LeftOut {
+    let mut left = LeftOut {
         parts: parts.len(),
         whole_takes,
         asked: distances.len(),
@@ -135,8 +134,11 @@ pub fn left_out(takes: &[&[Quat]], spacing: f64, settings: &Settings) -> Result<
         spacing: learned.spacing,
         distances,
         nearest,
-        gap: gap.min(0.35),
-    })
+        least: spacing,
+        gap: 0.0,
+    };
+    left.gap = left.reaching(COVER);
+    Ok(left)
 }
 
 impl LeftOut {
@@ -148,6 +150,15 @@ impl LeftOut {
             [wider, depth.max(depth / size * wider)]
         });
         Settings { gap: Some(settings.gap.unwrap_or(self.gap)), hole, ..*settings }
+    }
+
+    /// How far a limit must go beyond the closing to hold a share of left-out rotations, in radians: not less than samples are
+    /// apart, and at most 15 degrees.
+    #[must_use]
+    pub fn reaching(&self, share: f64) -> f64 {
+        // Distances rise, so that this share of them is at least what is at the rest.
+        let beyond = -percentile(&self.distances, 1.0 - share.clamp(0.0, 1.0));
+        beyond.clamp(self.least.min(FARTHEST), FARTHEST)
     }
 
     /// The share of left-out rotations that a closing holds with a layer of a thickness in radians.

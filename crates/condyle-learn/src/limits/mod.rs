@@ -21,5 +21,5 @@ mod uniform;
 
 pub use cloud::{Cloud, Gathered, SPACING};
 pub use field::{About, Answer, Field, LearnedLimit, Settings, State, learn};
-pub use left_out::{LeftOut, independent, left_out, percentile};
+pub use left_out::{COVER, LeftOut, independent, left_out, percentile};
 pub use uniform::uniform;

@@ -19,6 +19,8 @@ pub struct How {
     pub spacing: Option<f64>,
     /// How far the limit goes beyond the closing, in radians.
     pub offset: Option<f64>,
+    /// The share of left-out rotations that the limit must hold, as far as an offset of 15 degrees does; without it, 0.95.
+    pub cover: Option<f64>,
     /// The settings of the field; its `gap` is that of `offset`.
     pub settings: Settings,
 }
@@ -112,11 +114,18 @@ pub fn learn(takes: &[Take], how: &How, name: &str) -> Result<LearnedFrom, Error
     let mut settings = Settings { gap: how.offset, ..how.settings };
     let mut said = None;
     if !independent {
-        let left = left_out(&raw, cloud.spacing(), &settings)?;
+        let mut left = left_out(&raw, cloud.spacing(), &settings)?;
+        if let Some(cover) = how.cover {
+            left.gap = left.reaching(cover);
+        }
         settings = left.settings(&settings);
         said = Some(left);
     }
-    let limit = field::limit(&cloud, &settings, about(takes, &cloud, name))?;
+    let mut about = about(takes, &cloud, name);
+    if let (Some(left), Some(gap)) = (&said, settings.gap) {
+        about.source.push_str(&beyond(left, gap));
+    }
+    let limit = field::limit(&cloud, &settings, about)?;
     let warnings = warnings(&cloud, takes);
     Ok(LearnedFrom { limit, gathered: cloud.gathered(), independent, left_out: said, warnings })
 }
@@ -167,6 +176,17 @@ fn warnings(cloud: &Cloud, takes: &[Take]) -> Vec<Diagnostic> {
         warnings.push(Diagnostic::warning("learn/mixed", message));
     }
     warnings
+}
+
+/// How far a limit goes beyond recordings, and what that rests on.
+fn beyond(left: &LeftOut, gap: f64) -> String {
+    let what = if left.whole_takes { "takes" } else { "blocks of time" };
+    format!(
+        "; {:.1} degrees beyond them, with which {:.0} % of {} {what} are inside the others",
+        gap.to_degrees(),
+        100.0 * left.held(gap),
+        left.parts
+    )
 }
 
 /// What is said of a limit that is learned from takes.

@@ -3,12 +3,15 @@
 //! ```text
 //! Cloud -> Ground               axes               samples as files hold them, the cloud's axes
 //!       -> distances at nodes   closing, nearest   what no empty ball covers, holes carved
-//!                               layer              what samples leave before a boundary, evened out
+//!                               layer, density     what samples leave before a boundary, more where they are sparse
+//!                               even               roughness by chance evened out, edges kept
 //!       -> Field                condyle-model      a cubic spline over all rotations, and its answers
 //! ```
 
 mod axes;
 mod closing;
+mod density;
+mod even;
 mod layer;
 mod nearest;
 

@@ -52,7 +52,7 @@ pub(super) struct Nodes<'a> {
     pub(super) lattice: &'a Lattice,
     pub(super) rotations: &'a [Option<Quat>],
     /// Nodes of use, in rising order, with what is needed of each.
-    used: Vec<(u32, [f32; 4])>,
+    pub(super) used: Vec<(u32, [f32; 4])>,
     /// Those that are in the map twice, with the nodes about the other place.
     seam: Vec<(u32, [f32; 4], [usize; 8])>,
 }

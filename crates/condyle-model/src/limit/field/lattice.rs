@@ -61,7 +61,14 @@ impl Lattice {
         // dV = 8 cos(θ/4) dx³, up to the half turns, |x| = √2.
         let square = 2.0 * (1.0 - q.w);
         let within = (2f64.sqrt() - square.sqrt()) / self.step + 0.5;
-        8.0 * (1.0 - square / 4.0).sqrt() * self.step.powi(3) * within.clamp(0.0, 1.0)
+        self.around_node(q) * within.clamp(0.0, 1.0)
+    }
+
+    /// The volume about a node in rad³, also of one that is beyond the half turns.
+    #[must_use]
+    pub fn around_node(&self, q: Quat) -> f64 {
+        let square = 2.0 * (1.0 - q.w);
+        8.0 * (1.0 - square / 4.0).max(0.0).sqrt() * self.step.powi(3)
     }
 
     /// The eight nodes about a quaternion; its w must be above -`OVERLAP`.
