@@ -42,7 +42,10 @@ pub fn read(bytes: &[u8], include: &mut Include<'_>) -> Result<Read<Holding>, Er
     }
     if let Some(tool) = scale_setup::tool_of(root) {
         return Err(tool
-            .error("osim/scale-setup", "this is a setup of scaling, no model and no setup of tracking")
+            .error(
+                "osim/scale-setup",
+                "this is a setup of scaling, no model and no setup of tracking",
+            )
             .with_help("give it to `condyle scale --setup`"));
     }
     let message = "the file holds no <Model>, no <InverseKinematicsTool> and no <IKTaskSet>";

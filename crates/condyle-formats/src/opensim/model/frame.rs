@@ -128,7 +128,10 @@ fn absolute(context: &str, reference: &str) -> String {
 
 impl<'d> Frames<'d> {
     /// Collects all frames and makes a segment of each body.
-    pub(in crate::opensim) fn collect(model: Element<'d>, builder: &mut ModelBuilder) -> Result<Self, Error> {
+    pub(in crate::opensim) fn collect(
+        model: Element<'d>,
+        builder: &mut ModelBuilder,
+    ) -> Result<Self, Error> {
         let mut frames = Self {
             items: vec![],
             by_path: HashMap::new(),
@@ -201,7 +204,10 @@ impl<'d> Frames<'d> {
 
     /// What a part of the model is fixed in, under the first of these names that it has: a socket
     /// since version 3.05, a connector or the name of a body before.
-    pub(in crate::opensim) fn reference(owner: Element<'d>, names: &[&str]) -> Result<Element<'d>, Error> {
+    pub(in crate::opensim) fn reference(
+        owner: Element<'d>,
+        names: &[&str],
+    ) -> Result<Element<'d>, Error> {
         let plain = |name: &&str| owner.child(name).filter(|e| !e.text().is_empty());
         let socket = |name: &&str| Self::socket(owner, name);
         names.iter().find_map(socket).or_else(|| names.iter().find_map(plain)).ok_or_else(|| {

@@ -59,13 +59,8 @@ pub(super) fn measure<'d>(
         let name = e.attribute("name").unwrap_or_default();
         known.get(name).copied().unwrap_or(Affine::IDENTITY)
     });
-    let mut posed = Posed {
-        frames,
-        model,
-        pose: &pose,
-        bodies: bodies.collect(),
-        surfaces: HashMap::new(),
-    };
+    let mut posed =
+        Posed { frames, model, pose: &pose, bodies: bodies.collect(), surfaces: HashMap::new() };
     let parts: Vec<Element<'d>> = element.descendants().filter(|e| !is_default(*e)).collect();
     for part in parts.iter().filter(|e| e.name().starts_with("Wrap")) {
         if let (Some(name), Some(surface)) = (part.attribute("name"), posed.surface(*part)?) {
@@ -162,8 +157,13 @@ struct Surface {
 #[derive(Clone, Copy, Debug)]
 enum Shape {
     /// Around z.
-    Cylinder { radius: f64, length: f64 },
-    Ellipsoid { radii: Vec3 },
+    Cylinder {
+        radius: f64,
+        length: f64,
+    },
+    Ellipsoid {
+        radii: Vec3,
+    },
     /// One that muscles wrap in ways that are not told apart.
     Other,
 }

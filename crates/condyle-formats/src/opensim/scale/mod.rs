@@ -33,9 +33,7 @@ mod part;
 mod placed;
 mod report;
 
-pub use placed::{
-    MarkerPlace, fixed_markers, with_marker_set, with_markers_at, without_markers,
-};
+pub use placed::{MarkerPlace, fixed_markers, with_marker_set, with_markers_at, without_markers};
 pub use report::{Left, Report, ScaledBody};
 
 use super::model::frame::{Frames, is_default};

@@ -297,4 +297,3 @@ impl<'d> Scaling<'d, '_, '_> {
 fn mean(v: Vec3) -> f64 {
     (v.x + v.y + v.z) / 3.0
 }
-
