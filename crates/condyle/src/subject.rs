@@ -127,7 +127,18 @@ pub fn scale(text: &str, asked: &Asked<'_>) -> Result<Subject, Error> {
         (factors, measurements) = factors_of(&model, scaler, asked.measured, &mut warnings)?;
         rules.mass = rules.mass.or(asked.setup.mass);
         rules.preserve_mass |= scaler.preserve_mass;
-        let read = scale::scale(text, &factors, &rules, &mut standing)?;
+        let mut open = 0.0f64;
+        let mut posture = |model: &Model| {
+            let (posture, error) = standing(model);
+            open = open.max(error);
+            posture
+        };
+        let read = scale::scale(text, &factors, &rules, &mut posture)?;
+        if open > OPEN {
+            let message = format!("loops of the model stay open by {:.1} mm", 1e3 * open);
+            let said = Diagnostic::warning("scale/loop", message);
+            warnings.push(said.with_help("lengths of muscles are measured in such a pose"));
+        }
         for said in read.warnings {
             if !warnings.contains(&said) {
                 warnings.push(said);
@@ -148,11 +159,19 @@ pub fn scale(text: &str, asked: &Asked<'_>) -> Result<Subject, Error> {
     Ok(Subject { text, factors, measurements, report, placed, warnings })
 }
 
-/// The default posture, with loops closed as near to it as can be.
-fn standing(model: &Model) -> Vec<f64> {
+/// How much a loop counts against coordinates that leave their defaults: by so much that it is closed to
+/// a thousandth of a millimetre.
+const CLOSED: f64 = 1e9;
+
+/// A loop that is open by more than this (metres or radians) is said to be.
+const OPEN: f64 = 1e-5;
+
+/// The default posture with loops closed as near to it as can be, and how far they stay open (metres or
+/// radians).
+fn standing(model: &Model) -> (Vec<f64>, f64) {
     let defaults = model.defaults();
     if model.closures().is_empty() {
-        return defaults;
+        return (defaults, 0.0);
     }
     let target = |id| {
         let own = model.stored_range(id);
@@ -160,11 +179,11 @@ fn standing(model: &Model) -> Vec<f64> {
         (own.len() == 1).then_some(CoordinateTarget { coordinate: id, weight: 1.0, wanted })
     };
     let coordinates = model.coordinate_ids().filter_map(target).collect();
-    let targets = Targets { coordinates, ..Targets::default() };
+    let targets = Targets { coordinates, closure_weight: Some(CLOSED), ..Targets::default() };
     let rules = Rules { tolerance: 1e-12, limits: false };
     let tracker = Tracker::new(model.clone(), targets, rules);
     let answer = tracker.solve_frame(&mut Scratch::new(&tracker), &[], 0, &defaults);
-    if answer.status == FrameStatus::Infeasible { defaults } else { answer.coordinates }
+    (answer.coordinates, answer.closure_error)
 }
 
 /// Where the markers of a model are in its default pose.
@@ -172,7 +191,7 @@ fn places(model: &Model) -> Vec<Vec3> {
     let program = Program::compile(model);
     let mut pose = Pose::new(&program);
     // The buffers are of this program, so nothing can be refused.
-    let _ = program.evaluate(&standing(model), Mode::Open, &mut pose);
+    let _ = program.evaluate(&standing(model).0, Mode::Open, &mut pose);
     model.markers().iter().map(|marker| pose.frame(marker.segment) * marker.point).collect()
 }
 

@@ -13,8 +13,6 @@ use condyle_math::Vec3;
 
 /// The first version whose joints state their ends as frames.
 const FRAMES_IN_JOINTS: u32 = 30505;
-/// The first version that has functions which multiply others; joints before stretch by themselves.
-const MULTIPLIERS: u32 = 20000;
 
 impl<'d> Scaling<'d, '_, '_> {
     pub(super) fn joint(&mut self, joint: Element<'d>) -> Result<(), Error> {
@@ -77,7 +75,6 @@ impl<'d> Scaling<'d, '_, '_> {
 
     /// A custom joint: the functions of its translations.
     fn custom(&mut self, joint: Element<'d>, parent: Vec3) -> Result<(), Error> {
-        let mut stretches = false;
         for (place, element) in axes(joint) {
             let rotation = element.child_bool("is_rotation")?.unwrap_or(place < 3);
             if rotation {
@@ -114,10 +111,6 @@ impl<'d> Scaling<'d, '_, '_> {
             }
             let Some(function) = function else { continue };
             self.report.count("translations of joints");
-            if self.version < MULTIPLIERS {
-                stretches = true;
-                continue;
-            }
             if self.rules.as_opensim {
                 let [a, f] = [axis.to_array(), parent.to_array()];
                 let factor = a.iter().zip(f).map(|(a, f)| a.abs() * f).sum();
@@ -133,15 +126,6 @@ impl<'d> Scaling<'d, '_, '_> {
                 self.report.beyond.push(("turned by unequal factors", axis_of(joint, element)));
             }
             self.multiply(function, reach(axis, parent))?;
-        }
-        if stretches {
-            match self.triple(joint, "scale_factors", parent)? {
-                true => {}
-                false => {
-                    let three = written(&parent.to_array());
-                    self.edits.append(joint, &format!("<scale_factors>{three}</scale_factors>"));
-                }
-            }
         }
         Ok(())
     }

@@ -152,6 +152,8 @@ struct Posed<'d, 'm> {
 struct Surface {
     in_world: Affine,
     shape: Shape,
+    /// Whether a path has to pass on one side, so that it may wrap without being met.
+    one_sided: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -159,7 +161,6 @@ enum Shape {
     /// Around z.
     Cylinder {
         radius: f64,
-        length: f64,
     },
     Ellipsoid {
         radii: Vec3,
@@ -177,9 +178,7 @@ impl<'d> Posed<'d, '_> {
     fn surface(&self, part: Element<'d>) -> Result<Option<Surface>, Error> {
         let number = |name: &str| part.child_f64(name).map(|x| x.unwrap_or(0.0));
         let shape = match part.name() {
-            "WrapCylinder" => {
-                Shape::Cylinder { radius: number("radius")?, length: number("length")? }
-            }
+            "WrapCylinder" => Shape::Cylinder { radius: number("radius")? },
             "WrapSphere" => {
                 let radius = number("radius")?;
                 Shape::Ellipsoid { radii: Vec3::new(radius, radius, radius) }
@@ -193,7 +192,10 @@ impl<'d> Posed<'d, '_> {
             if let Some((base, frame)) = self.frames.at(element)? {
                 let turn = triple(part, "xyz_body_rotation")?.to_array();
                 let own = Affine::new(EulerOrder::XYZ.to_mat3(turn), triple(part, "translation")?);
-                return Ok(Some(Surface { in_world: self.world(base) * frame * own, shape }));
+                let side = part.child_text("quadrant").unwrap_or("all");
+                let one_sided = !matches!(side, "all" | "Unassigned");
+                let in_world = self.world(base) * frame * own;
+                return Ok(Some(Surface { in_world, shape, one_sided }));
             }
             here = element.parent();
         }
@@ -272,30 +274,32 @@ impl<'d> Posed<'d, '_> {
 }
 
 impl Surface {
-    /// Whether the line between two places enters the surface.
+    /// Whether the line between two places enters the surface, or may be led around it.
     fn meets(&self, a: Vec3, b: Vec3) -> bool {
+        if self.one_sided {
+            return true;
+        }
         let back = self.in_world.rigid_inverse();
         let (a, b) = (back * a, back * b);
         match self.shape {
             Shape::Other => true,
-            Shape::Cylinder { radius, length } => {
+            // Its ends are left out of account: OpenSim wraps a little beyond them.
+            Shape::Cylinder { radius } => {
                 let flat = |p: Vec3| Vec3::new(p.x, p.y, 0.0);
-                let (share, nearest) = nearest(flat(a), flat(b));
-                let height = a.z + share * (b.z - a.z);
-                nearest.norm() < radius && height.abs() <= 0.5 * length
+                nearest(flat(a), flat(b)).norm() < radius
             }
             Shape::Ellipsoid { radii } => {
                 let unit = |p: Vec3| Vec3::new(p.x / radii.x, p.y / radii.y, p.z / radii.z);
-                nearest(unit(a), unit(b)).1.norm() < 1.0
+                nearest(unit(a), unit(b)).norm() < 1.0
             }
         }
     }
 }
 
-/// The place on the line between two points that is nearest to the origin, with its share of the way.
-fn nearest(a: Vec3, b: Vec3) -> (f64, Vec3) {
+/// The place on the line between two points that is nearest to the origin.
+fn nearest(a: Vec3, b: Vec3) -> Vec3 {
     let along = b - a;
     let squared = along.norm_squared();
     let share = if squared > 0.0 { (-a.dot(along) / squared).clamp(0.0, 1.0) } else { 0.0 };
-    (share, a + along * share)
+    a + along * share
 }

@@ -7,7 +7,7 @@ use crate::opensim::model::function::is_function;
 use crate::opensim::model::triple;
 use crate::xml::Element;
 use condyle_diagnostics::Error;
-use condyle_math::{EulerOrder, Vec3};
+use condyle_math::{EulerOrder, Mat3, Vec3};
 
 /// Forces and controls that hold no length.
 const NO_LENGTHS: [&str; 14] = [
@@ -52,8 +52,22 @@ impl<'d> Scaling<'d, '_, '_> {
                 if let Some(factor) = self.around(part)? {
                     self.appearance(part, factor)?;
                 }
+                self.stands(part, Mat3::IDENTITY)?;
             }
+            "DisplayGeometry" => self.displayed(part)?,
             "CoordinateCouplerConstraint" => self.coupler(part)?,
+            "WeldConstraint" => {
+                // Since version 4 its ends are offset frames, which OpenSim makes of old files too.
+                let pairs: [(&str, &[&str]); 2] = [
+                    ("location_body_1", &["body_1", "frame1"]),
+                    ("location_body_2", &["body_2", "frame2"]),
+                ];
+                for (property, frames) in pairs {
+                    if part.child_text(property).is_some() {
+                        self.point(part, property, frames, "ends of welds")?;
+                    }
+                }
+            }
             _ if class.starts_with("Wrap")
                 && !class.ends_with("Set")
                 && part.child("translation").is_some() =>
@@ -136,6 +150,36 @@ impl<'d> Scaling<'d, '_, '_> {
             Some(factors) => self.appearance(geometry, factors),
             None => Ok(()),
         }
+    }
+
+    /// Geometry of a body before version 4: where it stands in what the body shows.
+    fn displayed(&mut self, geometry: Element<'d>) -> Result<(), Error> {
+        let mut around = std::iter::successors(geometry.parent(), |e| e.parent());
+        let Some(visible) = around.find(|e| e.is("VisibleObject")) else { return Ok(()) };
+        if !visible.parent().is_some_and(|e| e.is("Body")) {
+            return Ok(());
+        }
+        let turn = match visible.child_numbers::<6>("transform")? {
+            Some([a, b, c, ..]) => EulerOrder::XYZ.to_mat3([a, b, c]),
+            None => Mat3::IDENTITY,
+        };
+        self.stands(geometry, turn)
+    }
+
+    /// The place in a `transform` of three angles and three lengths, inside a turned frame of a body.
+    fn stands(&mut self, part: Element<'d>, turn: Mat3) -> Result<(), Error> {
+        let Some([a, b, c, x, y, z]) = part.child_numbers::<6>("transform")? else {
+            return Ok(());
+        };
+        let (Some(f), Some(child)) = (self.around(part)?, part.child("transform")) else {
+            return Ok(());
+        };
+        let place = Vec3::new(x, y, z);
+        if place != Vec3::ZERO && f != Vec3::new(1.0, 1.0, 1.0) {
+            let [x, y, z] = (turn.transpose() * (turn * place).times(f)).to_array();
+            self.edits.set_text(child, &written(&[a, b, c, x, y, z]));
+        }
+        Ok(())
     }
 
     fn appearance(&mut self, geometry: Element<'d>, factors: Vec3) -> Result<(), Error> {
