@@ -1,7 +1,7 @@
 //! Joints: their frames in old files, the lengths of their surfaces, the functions of their
 //! translations, and their coordinates that are lengths.
 
-use super::{Scaling, name_of, written};
+use super::{Scaling, name_of, reach, written};
 use crate::opensim::model::frame::Frames;
 use crate::opensim::model::function::is_function;
 use crate::opensim::model::joint::axes;
@@ -234,12 +234,6 @@ impl<'d> Scaling<'d, '_, '_> {
         }
         Ok(())
     }
-}
-
-/// By how much a length along an axis grows.
-fn reach(axis: Vec3, factors: Vec3) -> f64 {
-    let reach = axis.times(factors).norm() / axis.norm();
-    if reach.is_finite() { reach } else { 1.0 }
 }
 
 fn coordinates(joint: Element<'_>) -> Vec<Element<'_>> {

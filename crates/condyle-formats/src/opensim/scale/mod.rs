@@ -296,6 +296,15 @@ impl<'d, 't, 'r> Scaling<'d, 't, 'r> {
     }
 }
 
+/// By how much a length along an axis grows.
+fn reach(axis: Vec3, factors: Vec3) -> f64 {
+    if factors == Vec3::new(factors.x, factors.x, factors.x) {
+        return factors.x;
+    }
+    let reach = axis.times(factors).norm() / axis.norm();
+    if reach.is_finite() { reach } else { 1.0 }
+}
+
 /// Numbers as a file has them, with all their digits.
 fn written(numbers: &[f64]) -> String {
     let words: Vec<String> = numbers.iter().map(f64::to_string).collect();

@@ -1,7 +1,7 @@
 //! Parts that are fixed in bodies: frames, points, geometry, surfaces that muscles wrap, contacts,
 //! springs, points of constraints.
 
-use super::{Scaling, name_of, written};
+use super::{Scaling, name_of, reach, written};
 use crate::opensim::model::frame::POINT_FRAME;
 use crate::opensim::model::function::is_function;
 use crate::opensim::model::triple;
@@ -120,7 +120,7 @@ impl<'d> Scaling<'d, '_, '_> {
         self.triple(surface, "translation", factors)?;
         self.report.count("surfaces that muscles wrap");
         let turn = EulerOrder::XYZ.to_mat3(triple(surface, "xyz_body_rotation")?.to_array());
-        let local = [turn.x, turn.y, turn.z].map(|axis| axis.times(factors).norm());
+        let local = [turn.x, turn.y, turn.z].map(|axis| reach(axis, factors));
         let across = 0.5 * (local[0] + local[1]);
         match surface.name() {
             "WrapCylinder" => {
