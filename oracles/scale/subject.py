@@ -3,7 +3,8 @@
     python oracles/scale/subject.py CONDYLE SHARED > oracles/scale/subject.json
 
 The model is SHARED/knee/opencap4/manually_scaled.osim with the translation axes of its right knee turned by
-0.6435 rad about z (no public model has oblique ones), the trial static1.trc. Measurements give unequal
+0.6435 rad about z (no public model has oblique ones), first made another size by OpenSim with the factors of
+sweep.py, so that there is something to scale; the trial is static1.trc. Measurements give unequal
 factors of thighs, shanks and trunk, the pelvis has some by hand. A marker set fixes nine markers.
 Afterwards InverseDynamicsTool runs on condyle's model and condyle's motion of walking1.trc. Needs OpenSim
 4.6 for Python.
@@ -18,6 +19,7 @@ import sys
 import tempfile
 
 import opensim
+from sweep import by_opensim
 
 opensim.Logger.setLevelString("Off")
 FIXED = ["r.ASIS", "L.ASIS", "r.PSIS", "L.PSIS", "r_knee", "r_ankle", "L_knee", "L_ankle", "C7"]
@@ -32,7 +34,9 @@ def write_inputs(folder, shared):
     for axis, turned in (("translation1", "0.8 0.6 0"), ("translation2", "-0.6 0.8 0")):
         knee = re.sub(rf'(<TransformAxis name="{axis}">.*?<axis>)[^<]*(</axis>)', rf"\g<1>{turned}\g<2>", knee, flags=re.S)
     text = text[:start] + knee + text[end:]
-    open(f"{folder}/generic.osim", "w").write(text)
+    open(f"{folder}/first.osim", "w").write(text)
+    by_opensim(f"{folder}/first.osim", f"{folder}/generic.osim")
+    text = open(f"{folder}/generic.osim").read()
     markers = text[text.index("<MarkerSet") : text.index("</MarkerSet>") + len("</MarkerSet>")]
 
     def fix(match):
@@ -66,7 +70,7 @@ def write_inputs(folder, shared):
 <GenericModelMaker><model_file>generic.osim</model_file><marker_set_file>markers.xml</marker_set_file></GenericModelMaker>
 <ModelScaler><apply>true</apply><scaling_order> measurements manualScale</scaling_order>
 <MeasurementSet><objects>{measurements}</objects></MeasurementSet>
-<ScaleSet><objects><Scale><scales> 1.1 0.95 1.05</scales><segment>pelvis</segment><apply>true</apply></Scale></objects></ScaleSet>
+<ScaleSet><objects><Scale><scales> 0.97 1.08 0.92</scales><segment>pelvis</segment><apply>true</apply></Scale></objects></ScaleSet>
 <marker_file>{trial}</marker_file><time_range>{RANGE[0]} {RANGE[1]}</time_range>
 <preserve_mass_distribution>false</preserve_mass_distribution>
 <output_model_file>scaled.osim</output_model_file><output_scale_file>factors.xml</output_scale_file></ModelScaler>

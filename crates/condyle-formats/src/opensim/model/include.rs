@@ -3,6 +3,7 @@
 use super::frame::is_default;
 use super::of;
 use crate::Include;
+use crate::text::check_size;
 use crate::xml::edit::Edits;
 use crate::xml::{Element, XmlDocument};
 use condyle_diagnostics::{Diagnostic, Error, Read};
@@ -77,6 +78,7 @@ pub(in crate::opensim) fn put_into_text(
     let Read { value: document, mut warnings } = XmlDocument::parse(text)?;
     let is_model = of(document.root()).is_some();
     let mut edits = Edits::new(text);
+    let mut included = text.len();
     for set in document.root().descendants().filter(|e| e.name().ends_with("Set")) {
         let file = set.attribute("file").map(str::trim).unwrap_or_default();
         if file.is_empty() || file.eq_ignore_ascii_case("unassigned") || is_default(set) {
@@ -95,6 +97,8 @@ pub(in crate::opensim) fn put_into_text(
                 continue;
             }
         };
+        included += other.len();
+        check_size(included)?;
         let other = other.strip_prefix('\u{feff}').unwrap_or(&other);
         let parsed = XmlDocument::parse(other)
             .map_err(|error| set.error("osim/include", format!("in `{file}`: {error}")))?;
