@@ -206,7 +206,7 @@ const SETUP: &str = r#"<OpenSimDocument Version="40000"><ScaleTool name="anna"><
 #[test]
 fn an_osim_comes_back_as_itself() {
     let folder = folder("scale-osim");
-    folder.write("scale.xml", SETUP.to_owned());
+    folder.write("scale.xml", SETUP);
     let run = ["scale", "leg.osim", "--setup", "scale.xml", "-o", "anna.osim", "--report", "r.md"];
     let report = folder.condyle(&[&run[..], &["--json"]].concat()).json();
     // Both markers of a pair move with their bone: a ratio of distances is its factor.
@@ -241,7 +241,7 @@ fn three(text: &str) -> [f64; 3] {
 #[test]
 fn what_a_setup_cannot_do_is_said() {
     let folder = folder("scale-setup-wrong");
-    folder.write("scale.xml", SETUP.to_owned());
+    folder.write("scale.xml", SETUP);
     let says = |arguments: &[&str], message: &str| {
         let run = folder.condyle(&[&["scale"], arguments].concat());
         let error = run.refused();

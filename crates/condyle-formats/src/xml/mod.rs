@@ -67,6 +67,7 @@ struct Node {
     column: u32,
     byte: u64,
     /// How many bytes it takes in the text.
+    #[cfg(feature = "opensim")]
     length: u32,
 }
 
@@ -155,6 +156,7 @@ impl XmlDocument {
         }
         let attributes = node.attributes().map(|a| (a.name(), a.value()));
         self.append(node.tag_name().name(), own.trim(), attributes, parent, index, place);
+        #[cfg(feature = "opensim")]
         if let Some(own) = self.nodes.last_mut() {
             own.length = u32::try_from(node.range().len()).unwrap_or(0);
         }
@@ -217,6 +219,7 @@ impl XmlDocument {
             line: u32::try_from(place.line).unwrap_or(0),
             column: u32::try_from(place.column).unwrap_or(0),
             byte: place.byte.unwrap_or_default(),
+            #[cfg(feature = "opensim")]
             length: 0,
         });
         let Some(mother) = self.nodes.get_mut(parent as usize) else { return };
