@@ -48,9 +48,15 @@ const PARTS: &[(&str, &str)] = &[
     ("parts/hand.toml", include_str!("../models/parts/hand.toml")),
     ("parts/head.toml", include_str!("../models/parts/head.toml")),
     ("parts/human-keypoints.toml", include_str!("../models/parts/human-keypoints.toml")),
+    ("parts/human-limits.toml", include_str!("../models/parts/human-limits.toml")),
     ("parts/human-markers.toml", include_str!("../models/parts/human-markers.toml")),
     ("parts/knee-human.toml", include_str!("../models/parts/knee-human.toml")),
     ("parts/leg-bones.toml", include_str!("../models/parts/leg-bones.toml")),
+    ("parts/limit-shoulder.toml", include_str!("../models/parts/limit-shoulder.toml")),
+    (
+        "parts/limit-shoulder-lenarcic1994.toml",
+        include_str!("../models/parts/limit-shoulder-lenarcic1994.toml"),
+    ),
     ("parts/rib-cage.toml", include_str!("../models/parts/rib-cage.toml")),
     ("parts/vertebrae.toml", include_str!("../models/parts/vertebrae.toml")),
 ];

@@ -5,16 +5,20 @@
 //!       -> distances at nodes   closing, nearest   what no empty ball covers, holes carved
 //!                               layer              what samples leave before a boundary, evened out
 //!       -> Field                condyle-model      a cubic spline over all rotations, and its answers
+//! Shape -> distances at nodes   shape              of a limit that is given by formulas, without samples
 //! ```
 
 mod axes;
 mod closing;
 mod layer;
 mod nearest;
+mod shape;
 
 pub use condyle_model::limit::field::{
     About, Answer, Evidence, Field, Ground, Hole, Known, Learned, LearnedLimit, Settings, State,
 };
+
+pub use shape::shaped;
 
 use super::Cloud;
 use condyle_diagnostics::Error;
@@ -95,13 +99,18 @@ pub fn ground(cloud: &Cloud, settings: &Settings) -> Result<Ground, Error> {
         chart: axes::of(cloud),
         settings: *settings,
         known: None,
+        shape: None,
     })
 }
 
 /// The field of a ground: of one that was saved, the same as it was.
 #[must_use]
 pub fn made(ground: &Arc<Ground>) -> Field {
-    Field::new(ground.clone(), grid(ground))
+    let grid = match &ground.shape {
+        Some(shape) => shape::grid(ground, shape),
+        None => grid(ground),
+    };
+    Field::new(ground.clone(), grid)
 }
 
 fn grid(ground: &Ground) -> Grid {
