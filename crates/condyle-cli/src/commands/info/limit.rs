@@ -25,7 +25,10 @@ pub(super) fn to_json(limit: &LearnedLimit) -> Value {
         let about = limit.about();
         let ends = |ends: &Ends| {
             let all = ends.lower().iter().chain(ends.upper()).map(|end| end.to_degrees());
-            json!([all.clone().fold(f64::INFINITY, f64::min), all.fold(f64::NEG_INFINITY, f64::max)])
+            json!([
+                all.clone().fold(f64::INFINITY, f64::min),
+                all.fold(f64::NEG_INFINITY, f64::max)
+            ])
         };
         return json!({
             "kind": "limit",

@@ -50,8 +50,17 @@ use condyle_model::limit::field::{Chart, snapped, unpacked};
 use std::sync::Arc;
 
 /// The tables and keys of a limit.
-pub(super) const KEYS: &[&str] =
-    &["child", "reference", "source", "population", "frames", "samples", "learning", "learned", "shape"];
+pub(super) const KEYS: &[&str] = &[
+    "child",
+    "reference",
+    "source",
+    "population",
+    "frames",
+    "samples",
+    "learning",
+    "learned",
+    "shape",
+];
 
 const FORM: Form = Form { kind: Kind::Limit, keys: KEYS, own: &[], repeated: &[] };
 
@@ -155,7 +164,8 @@ impl Reader<'_> {
             None => None,
         };
         if top.get("samples").is_none() {
-            let wanted = "a table with the rotations, `packed` or `rotations`, or one of formulas, `shape`";
+            let wanted =
+                "a table with the rotations, `packed` or `rotations`, or one of formulas, `shape`";
             self.missing(top, "samples", wanted);
         }
         let keys = ["packed", "rotations", "takes", "names", "thinned", "axes"];

@@ -44,7 +44,11 @@ impl Reader<'_> {
         let axes: Vec<_> = axes?.into_iter().collect::<Option<_>>()?;
         let Ok(axes) = <[_; 3]>::try_from(axes) else {
             let message = "`axes` are not three directions".to_owned();
-            self.length(fields.spot, message, "give three, such as [[1, 0, 0], [0, 0, 1], [0, 1, 0]]");
+            self.length(
+                fields.spot,
+                message,
+                "give three, such as [[1, 0, 0], [0, 0, 1], [0, 1, 0]]",
+            );
             return None;
         };
         let first = first?.map(|end| end * unit);
@@ -104,7 +108,11 @@ impl Reader<'_> {
         let rows: Vec<_> = list.iter().map(|row| self.numbers(row, label)).collect();
         let rows = rows.into_iter().collect::<Option<Vec<_>>>()?;
         if rows.windows(2).any(|pair| pair[0].len() != pair[1].len()) {
-            self.length(node.spot, format!("the rows of `{label}` are not equally long"), "give as many numbers in each");
+            self.length(
+                node.spot,
+                format!("the rows of `{label}` are not equally long"),
+                "give as many numbers in each",
+            );
             return None;
         }
         Some(rows.concat())

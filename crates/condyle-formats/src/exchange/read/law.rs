@@ -12,7 +12,9 @@ use condyle_model::component::{
     JointCone, Map, Parameters, Pivot, Place, Product, Reflection, Registry, RelativeOrientation,
     RelativePosition, Rotate, Scale, Shear, SurfaceAxis, Swinging, Translate,
 };
-use condyle_model::limit::field::{About, Chart, Ends, Ground, Known, LearnedLimit, Settings, Shape, ShapeError, snapped};
+use condyle_model::limit::field::{
+    About, Chart, Ends, Ground, Known, LearnedLimit, Settings, Shape, ShapeError, snapped,
+};
 use condyle_model::limit::{Cone, ConePoint, Projection};
 use std::sync::Arc;
 

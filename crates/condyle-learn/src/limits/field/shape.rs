@@ -1,25 +1,30 @@
 //! From a limit given by formulas to signed distances at nodes.
 //!
 //! 1. The boundary is the images of the six faces of a cube, of the parts of the way between the ends of the three turns.
-//!    Places on them, at most 2.5 degrees apart, tell for every node which part of the boundary is nearest.
-//! 2. From that place one Gauss-Newton step on its face, within the face, finds the nearest rotation of the boundary.
-//! 3. The sign is that of the formulas.
+//!    Places on them, at most 5 degrees apart, tell for the nodes of a lattice half as fine which part of the boundary is nearest.
+//! 2. A node begins at the nearest of the places of the coarse nodes about it. Two Gauss-Newton steps on its face, within the
+//!    face, find the nearest rotation of the boundary.
+//! 3. The sign is that of the formulas; where a coarse node is farther from the boundary than a cell is wide, its sign.
 //!
 //! Where the second turn is a quarter turn, first and third turn about one line, and images of different parts of the cube
 //! meet: what is between them by less than twice `beyond` is inside.
 
 use super::nearest::{Ball, Nearest, Nodes};
 use condyle_math::{Quat, Vec3};
-use condyle_model::limit::field::{Boundary, Chart, Grid, Ground, Lattice, Learned, Settings, Shape};
+use condyle_model::limit::field::{
+    Boundary, Chart, Grid, Ground, Lattice, Learned, Settings, Shape,
+};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// Nodes along an edge of the map for a shape: 6.6 degrees apart in the middle.
 const NODES: usize = 56;
 /// The most between neighbouring places of a face, in radians.
-const APART: f64 = 2.5 * PI / 180.0;
-/// Farther than this from the boundary the nearest of the places is near enough, in radians: within 0.1 degrees.
-const NEAR: f32 = 0.4;
+const APART: f64 = 5.0 * PI / 180.0;
+/// What a cell of a lattice is at most across, in steps of its nodes in the middle: √3, and √2 where steps are longest.
+const ACROSS: f64 = 2.5;
+/// Gauss-Newton steps from a place to the nearest rotation of its face.
+const STEPS: usize = 2;
 /// A step by which slopes of a face are found, in parts of it.
 const STEP: f64 = 1e-5;
 
@@ -122,30 +127,39 @@ impl Place {
         Self { face, at, here, slopes }
     }
 
-    /// The angle from a rotation to the boundary about this place: from the foot of the perpendicular on the plane of both
-    /// slopes, which is on the boundary but for its curvature over half of what places are apart.
-    fn angle_to(&self, shape: &Shape, q: Quat) -> f64 {
-        let to = towards(self.here, q);
+    /// The rotation of the boundary about this place that is nearest to one: the foot of the perpendicular on the plane of both
+    /// slopes, then again from there.
+    fn foot(&self, shape: &Shape, q: Quat) -> Quat {
         let [a, b] = self.slopes;
         let (aa, ab, bb) = (a.dot(a) + 1e-9, a.dot(b), b.dot(b) + 1e-9);
-        let (ta, tb) = (a.dot(to), b.dot(to));
         let determinant = (aa * bb - ab * ab).max(1e-12);
-        let mut step = [(ta * bb - tb * ab) / determinant, (tb * aa - ta * ab) / determinant];
-        let room = |side: usize, step: f64| (self.at[side] + step).clamp(0.0, 1.0) - self.at[side];
-        // At an edge of the face along the edge.
-        match [0, 1].map(|side| (room(side, step[side]) - step[side]).abs() > 1e-12) {
-            [true, false] => {
-                step[0] = room(0, step[0]);
-                step[1] = (tb - ab * step[0]) / bb;
+        let (mut at, mut here) = (self.at, self.here);
+        let mut best = (q.dot(here).abs(), here);
+        for _ in 0..STEPS {
+            let to = towards(here, q);
+            let (ta, tb) = (a.dot(to), b.dot(to));
+            let mut step = [(ta * bb - tb * ab) / determinant, (tb * aa - ta * ab) / determinant];
+            let room = |side: usize, step: f64| (at[side] + step).clamp(0.0, 1.0) - at[side];
+            // At an edge of the face along the edge.
+            match [0, 1].map(|side| (room(side, step[side]) - step[side]).abs() > 1e-12) {
+                [true, false] => {
+                    step[0] = room(0, step[0]);
+                    step[1] = (tb - ab * step[0]) / bb;
+                }
+                [false, true] => {
+                    step[1] = room(1, step[1]);
+                    step[0] = (ta - ab * step[1]) / aa;
+                }
+                _ => {}
             }
-            [false, true] => {
-                step[1] = room(1, step[1]);
-                step[0] = (ta - ab * step[1]) / aa;
+            at = [0, 1].map(|side| at[side] + room(side, step[side]));
+            here = self.face.rotation(shape, at);
+            let near = q.dot(here).abs();
+            if near > best.0 {
+                best = (near, here);
             }
-            _ => {}
         }
-        let at = [0, 1].map(|side| self.at[side] + room(side, step[side]));
-        self.face.rotation(shape, at).angle_to(q).min(to.norm())
+        best.1
     }
 }
 
@@ -173,25 +187,33 @@ fn towards(q: Quat, p: Quat) -> Vec3 {
 pub(super) fn grid(ground: &Ground, shape: &Shape) -> Grid {
     let lattice = Lattice::new(ground.settings.nodes.clamp(24, 256));
     let rotations = lattice.nodes();
-    let nodes = Nodes::new(&lattice, &rotations);
     let places = places(shape);
     let at: Vec<Quat> = places.iter().map(|place| ground.chart.inward(place.here)).collect();
-    let balls: Vec<Ball> = at.iter().map(|q| Ball::new(*q, 0.0)).collect();
-    let Nearest { mut value, ball } = nodes.nearest(&balls, super::closing::seeds(&lattice, &at));
-    for ((value, ball), q) in value.iter_mut().zip(&ball).zip(&rotations) {
-        let Some(q) = q else {
-            *value = f32::NAN;
-            continue;
-        };
-        let q = ground.chart.outward(*q);
-        if *value < NEAR + shape.beyond() as f32
-            && let Some(place) = places.get(*ball as usize)
+    let coarse = Coarse::new(ground, shape, (lattice.edge / 2).max(24), &at);
+    let beyond = shape.beyond();
+    let mut value = vec![f32::NAN; lattice.len()];
+    let (mut starts, mut start_of) = (vec![], vec![u32::MAX; lattice.len()]);
+    for (node, inward) in rotations.iter().enumerate() {
+        let Some(inward) = inward else { continue };
+        let q = ground.chart.outward(*inward);
+        let (place, known) = coarse.about(*inward, &at);
+        let Some(place) = places.get(place as usize) else { continue };
+        let inside = known.unwrap_or_else(|| shape.contains(q));
+        let foot = place.foot(shape, q);
+        let to = towards(foot, q);
+        let away = to.norm();
+        value[node] = (if inside { away } else { -away } + beyond) as f32;
+        // Every other node begins a search for the nearest rotation at its own.
+        if [1, lattice.edge, lattice.edge * lattice.edge]
+            .iter()
+            .all(|stride| node / stride % lattice.edge % 2 == 0)
         {
-            *value = value.min(place.angle_to(shape, q) as f32);
+            let out = if inside || away < beyond { 1.0 } else { beyond / away };
+            start_of[node] = starts.len() as u32;
+            starts.push(ground.chart.inward(foot * Quat::exp(to * out)));
         }
-        let sign = if shape.contains(q) { 1.0 } else { -1.0 };
-        *value = sign * *value + shape.beyond() as f32;
     }
+    let nodes = Nodes::new(&lattice, &rotations);
     let share = super::layer::volume(&nodes, &value) / (8.0 * PI * PI);
     let learned = Learned {
         spacing: 0.0,
@@ -203,7 +225,46 @@ pub(super) fn grid(ground: &Ground, shape: &Shape) -> Grid {
         valid: share,
         holes: vec![],
     };
-    // Searches for the nearest rotation start on the boundary without what is beyond it, and go out from there.
-    let boundary = Boundary::new(&lattice, &at, &ball);
+    let boundary = Boundary::new(&lattice, &starts, &start_of);
     Grid { lattice, outer: value, carved: None, near: vec![], counts: vec![], boundary, learned }
+}
+
+/// A lattice half as fine, with the nearest place of each node and the signed distance to the boundary by places.
+struct Coarse {
+    lattice: Lattice,
+    near: Nearest,
+    inside: Vec<bool>,
+}
+
+impl Coarse {
+    fn new(ground: &Ground, shape: &Shape, edge: usize, at: &[Quat]) -> Self {
+        let lattice = Lattice::new(edge);
+        let rotations = lattice.nodes();
+        let balls: Vec<Ball> = at.iter().map(|q| Ball::new(*q, 0.0)).collect();
+        let nodes = Nodes::new(&lattice, &rotations);
+        let near = nodes.nearest(&balls, super::closing::seeds(&lattice, at));
+        let inside =
+            rotations.iter().map(|q| q.is_some_and(|q| shape.contains(ground.chart.outward(q))));
+        let inside = inside.collect();
+        Self { lattice, near, inside }
+    }
+
+    /// Of a rotation of the map the nearest of the places of the nodes about it, and whether it is inside where they tell.
+    fn about(&self, q: Quat, at: &[Quat]) -> (u32, Option<bool>) {
+        let (mut best, mut place, mut known) = (-1.0, u32::MAX, None);
+        let corners = self.lattice.corners(q);
+        for node in corners {
+            let Some(index) = self.near.ball.get(node) else { continue };
+            let Some(there) = at.get(*index as usize) else { continue };
+            let near = q.dot(*there).abs();
+            if near > best {
+                (best, place) = (near, *index);
+            }
+            let value = self.near.value.get(node).copied().unwrap_or(0.0);
+            if f64::from(value) > ACROSS * self.lattice.angle() {
+                known = self.inside.get(node).copied();
+            }
+        }
+        (place, known)
+    }
 }

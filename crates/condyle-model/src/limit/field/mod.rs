@@ -353,7 +353,11 @@ impl Field {
             let sample = self.known(inward).sample;
             let near = self.samples.get(sample).copied().filter(inside);
             let middle = || {
-                self.ground.shape.as_ref().map(|shape| self.chart.inward(shape.middle())).filter(inside)
+                self.ground
+                    .shape
+                    .as_ref()
+                    .map(|shape| self.chart.inward(shape.middle()))
+                    .filter(inside)
             };
             near.or_else(|| self.samples.iter().copied().find(inside)).or_else(middle)
         };
