@@ -206,7 +206,7 @@ pub(super) fn grid(ground: &Ground, shape: &Shape) -> Grid {
         // Every other node begins a search for the nearest rotation at its own.
         if [1, lattice.edge, lattice.edge * lattice.edge]
             .iter()
-            .all(|stride| node / stride % lattice.edge % 2 == 0)
+            .all(|stride| (node / stride % lattice.edge).is_multiple_of(2))
         {
             let out = if inside || away < beyond { 1.0 } else { beyond / away };
             start_of[node] = starts.len() as u32;
