@@ -3,12 +3,14 @@
 //! | module | what |
 //! | --- | --- |
 //! | [`Cloud`] | rotations of one segment in another, gathered from recordings and thinned |
+//! | [`engine`] | the nearest cone with twist and the nearest reach cone, for game and robot engines |
 //! | [`field`] | the default method: signed geodesic distance to the closing of a cloud by empty balls |
 //! | [`herda2003`] | spheres in the vector part of quaternions, after Herda, Urtasun, Fua & Hanson 2003: the baseline |
 //! | [`left_out()`] | how far a limit goes beyond recordings, from takes that are left out |
 //! | [`mobility`] | volume, extent, thin regions, and what two limits have in common |
 
 mod cloud;
+pub mod engine;
 pub mod field;
 pub mod herda2003;
 mod left_out;

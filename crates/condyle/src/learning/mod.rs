@@ -5,13 +5,17 @@
 //! | `take` | the rotations that one recording shows: by a recipe, by a model and a joint, or as they stand |
 //! | `limit` | a limit from takes: thinned, with a layer from takes that were left out |
 //! | `query` | what a limit says of rotations |
+//! | `engine` | a learned limit in the numbers of game and robot engines |
 //! | `mobility` | a learned limit in numbers, and two compared |
 
+mod engine;
 mod limit;
 mod mobility;
 mod query;
 mod take;
 
+pub use condyle_learn::limits::engine::{Aim, ConeTwist, Law, Loss, Lost, ReachCone};
+pub use engine::{Engines, Fitted, engines, reach_document};
 pub use limit::{How, LearnedFrom, MOST_INDEPENDENT, learn, spheres};
 pub use mobility::{About, Axis, Region, Report, Side, Versus, report, versus};
 pub use query::{Answered, Limit};
