@@ -54,6 +54,7 @@ fn limit() -> FieldLimit {
         chart: Chart::new(Quat::IDENTITY, Quat::IDENTITY),
         settings: Settings::default(),
         known: None,
+        shape: None,
     };
     FieldLimit::new(Arc::new(LearnedLimit::new(About::default(), Arc::new(ground), None, ball)))
 }

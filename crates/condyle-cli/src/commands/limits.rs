@@ -186,7 +186,13 @@ fn rows(table: &Table, timed: bool, answers: &[Option<Answered>]) -> String {
             }
             None => text.push_str(",,,,"),
         }
-        let _ = writeln!(text, ",{}", rounded(answer.evidence.to_degrees()));
+        // A limit by formulas has no samples.
+        match answer.evidence.is_nan() {
+            true => text.push_str(",\n"),
+            false => {
+                let _ = writeln!(text, ",{}", rounded(answer.evidence.to_degrees()));
+            }
+        }
     }
     text
 }

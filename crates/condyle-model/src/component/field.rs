@@ -13,8 +13,12 @@
 //!
 //! Of the other side of a body the mirror image is asked: of q = (v, w) it is (-D·v, w).
 //!
+//! Of a limit by formulas that goes some way beyond its ends, g is at most that way, and within the ends no field is asked and
+//! none is made: there g is that way, and its slope 0.
+//!
 //! Holes of the field, where nothing was seen inside the outer boundary, are allowed unless `strict`.
-//! Kinks: none in g but where the nearest boundary changes, which the field rounds; in posed mode at the boundary.
+//! Kinks: none in g but where the nearest boundary changes, which the field rounds, and at the ends of formulas; in posed mode
+//! at the boundary.
 
 use super::{Contract, Fault, Geometry, Kind, Mirrored, Port, PortType, Reflection};
 use crate::limit::field::{LearnedLimit, State};
@@ -71,22 +75,48 @@ impl FieldLimit {
     /// Whether an orientation is possible, as the field has it.
     #[must_use]
     pub fn state(&self, q: Quat) -> State {
-        self.limit.field().state(self.inward(q)).0
+        let p = self.inward(q);
+        match self.within(p) {
+            Some(_) => State::Valid,
+            None => self.limit.field().state(p).0,
+        }
+    }
+
+    /// Of a limit by formulas how far it goes beyond their ends, if at all.
+    fn beyond_ends(&self) -> Option<f64> {
+        self.limit.ground().shape.as_ref().map(|shape| shape.beyond()).filter(|way| *way > 0.0)
+    }
+
+    /// The same, of a rotation that is within the ends: at least so far it is inside.
+    fn within(&self, p: Quat) -> Option<f64> {
+        let shape = self.limit.ground().shape.as_ref()?;
+        self.beyond_ends().filter(|_| shape.contains(p))
     }
 
     fn distance_and_slope(&self, q: Quat) -> (f64, Vec3) {
-        let (field, p) = (self.limit.field(), self.inward(q));
+        let p = self.inward(q);
+        if let Some(way) = self.within(p) {
+            return (way, Vec3::ZERO);
+        }
+        let field = self.limit.field();
         let (distance, gradient) = match self.strict {
             true => field.distance_and_gradient(p),
             false => field.outer_distance_and_gradient(p),
         };
+        if let Some(way) = self.beyond_ends().filter(|way| distance > *way) {
+            return (way, Vec3::ZERO);
+        }
         let slope = self.in_segment.to_mat3() * gradient;
         (distance, self.mirrored.map_or(slope, |at| at.turning(slope)))
     }
 
     fn distance(&self, q: Quat) -> f64 {
-        let (field, p) = (self.limit.field(), self.inward(q));
-        if self.strict { field.distance(p) } else { field.outer_distance(p) }
+        let p = self.inward(q);
+        self.within(p).unwrap_or_else(|| {
+            let field = self.limit.field();
+            let distance = if self.strict { field.distance(p) } else { field.outer_distance(p) };
+            self.beyond_ends().map_or(distance, |way| distance.min(way))
+        })
     }
 
     /// The nearest that is allowed, with the sign nearer to the given one.

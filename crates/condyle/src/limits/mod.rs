@@ -33,9 +33,10 @@ pub use swing::{COLOURS, LEVEL, Swing};
 
 pub use condyle_learn::limits::field::{
     About, Answer, Evidence, Field, Ground, Hole, Known, Learned, LearnedLimit, Settings, State,
-    limit as learn,
+    limit as learn, made, shaped,
 };
 pub use condyle_learn::limits::{Cloud, Gathered, SPACING, herda2003};
+pub use condyle_model::limit::field::{Ends, Shape, ShapeError};
 
 use condyle_math::{Quat, Vec3};
 use condyle_mesh::Mesh;

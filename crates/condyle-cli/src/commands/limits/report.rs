@@ -94,12 +94,16 @@ impl Report {
 
     fn text(&self, limit: &LearnedLimit, numbers: &Numbers, versus: Option<&Versus>) -> String {
         let about = limit.about();
+        let ground = limit.ground();
+        let from = match &ground.shape {
+            Some(_) => "by formulas".to_owned(),
+            None => format!("{} samples", ground.samples.len()),
+        };
         let mut text = format!(
-            "{}: {} in {}, {} samples\n",
+            "{}: {} in {}, {from}\n",
             self.limit.display(),
             about.child,
             about.reference.as_deref().unwrap_or("the laboratory"),
-            limit.ground().samples.len()
         );
         let bounds = numbers.interval.map_or(String::new(), |interval| {
             format!(

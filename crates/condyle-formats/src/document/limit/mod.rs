@@ -20,6 +20,7 @@
 //! [learned]
 //! spacing, radius, gap        = what was found: with these and `axes` the field is made again as it was
 //! extreme, surface, outer, valid, holes
+//! [shape]      = instead of all these: formulas, see `shape.rs`
 //! ```
 //!
 //! A rotation is a unit quaternion x, y, z, w of the child's axes in the reference's; q and -q are one rotation. Whatever
@@ -28,6 +29,7 @@
 //! The field is no part of the file: it is made when it is first asked for, and answers as the one that was
 //! learned.
 
+mod shape;
 mod spheres;
 mod write;
 
@@ -48,8 +50,17 @@ use condyle_model::limit::field::{Chart, snapped, unpacked};
 use std::sync::Arc;
 
 /// The tables and keys of a limit.
-pub(super) const KEYS: &[&str] =
-    &["child", "reference", "source", "population", "frames", "samples", "learning", "learned"];
+pub(super) const KEYS: &[&str] = &[
+    "child",
+    "reference",
+    "source",
+    "population",
+    "frames",
+    "samples",
+    "learning",
+    "learned",
+    "shape",
+];
 
 const FORM: Form = Form { kind: Kind::Limit, keys: KEYS, own: &[], repeated: &[] };
 
@@ -107,6 +118,11 @@ struct Samples {
     chart: Option<Chart>,
 }
 
+/// The name of a key in messages.
+fn below(top: &Fields<'_>, key: &str) -> String {
+    if top.label.is_empty() { key.to_owned() } else { format!("{}.{key}", top.label) }
+}
+
 impl Reader<'_> {
     /// What people want to know of a limit, but for the names of its takes.
     fn about(&mut self, top: &Fields<'_>, name: String) -> Option<About> {
@@ -126,6 +142,17 @@ impl Reader<'_> {
     /// The limit whose keys are in a table.
     pub(super) fn limit(&mut self, top: &Fields<'_>, name: String) -> Option<LearnedLimit> {
         let about = self.about(top, name);
+        if let Some(node) = top.get("shape") {
+            for key in ["samples", "learning", "learned"] {
+                if top.get(key).is_some() {
+                    self.exclusive(node, "shape", key);
+                    return None;
+                }
+            }
+            let label = below(top, "shape");
+            let ground = self.shape(node, label)?;
+            return Some(LearnedLimit::new(about?, Arc::new(ground), None, field::made));
+        }
         let learning = ["method", "nodes", "radii", "layer", "hole"];
         let settings = match self.table_of(top, "learning", &learning) {
             Some(fields) => self.settings(&fields),
@@ -137,7 +164,9 @@ impl Reader<'_> {
             None => None,
         };
         if top.get("samples").is_none() {
-            self.missing(top, "samples", "a table with the rotations, `packed` or `rotations`");
+            let wanted =
+                "a table with the rotations, `packed` or `rotations`, or one of formulas, `shape`";
+            self.missing(top, "samples", wanted);
         }
         let keys = ["packed", "rotations", "takes", "names", "thinned", "axes"];
         let samples = self.table_of(top, "samples", &keys)?;
@@ -148,7 +177,8 @@ impl Reader<'_> {
         let ground = match chart {
             Some(chart) => {
                 let known = known.flatten();
-                Ground { samples: rotations, takes, thinned, chart, settings, known }
+                let samples = rotations;
+                Ground { samples, takes, thinned, chart, settings, known, shape: None }
             }
             None => {
                 let cloud = Cloud::gather(&[&rotations], 0.0).ok()?;
@@ -162,8 +192,7 @@ impl Reader<'_> {
     /// A table below another, if it is there.
     fn table_of<'t>(&mut self, top: &Fields<'t>, key: &str, known: &[&str]) -> Option<Fields<'t>> {
         let node = top.get(key)?;
-        let label =
-            if top.label.is_empty() { key.to_owned() } else { format!("{}.{key}", top.label) };
+        let label = below(top, key);
         Some(self.table(node, node.spot, label, known))
     }
 
@@ -171,12 +200,7 @@ impl Reader<'_> {
         self.word(fields, "method", &[("closing", ())])?;
         let mut settings = Settings::default();
         if let Some(node) = fields.get("nodes") {
-            settings.nodes = self.count(node, "nodes")?;
-            if !(24..=256).contains(&settings.nodes) {
-                let message = format!("`nodes` is {}", settings.nodes);
-                self.texts.error(node.spot, "limit/settings", message, "give 24 to 256");
-                return None;
-            }
+            settings.nodes = self.nodes(node)?;
         }
         if let Some(node) = fields.get("radii") {
             let unit = self.angle_unit(node.spot);

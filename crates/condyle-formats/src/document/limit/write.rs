@@ -40,7 +40,10 @@ fn keys(out: &mut String, limit: &LearnedLimit, within: &str) {
     line("population", &about.population);
     line("frames", &about.frames);
     let ground = limit.ground();
-    let Ground { samples, takes, thinned, chart, settings, known } = &**ground;
+    let Ground { samples, takes, thinned, chart, settings, known, shape } = &**ground;
+    if let Some(shape) = shape {
+        return super::shape::write_shape(out, shape, settings.nodes, within);
+    }
     let _ = writeln!(out, "\n[{within}learning]");
     let _ = writeln!(out, "method = \"closing\"");
     let _ = writeln!(out, "nodes = {}", settings.nodes);

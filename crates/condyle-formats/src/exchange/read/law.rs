@@ -12,7 +12,9 @@ use condyle_model::component::{
     Heading, JointCone, Map, Parameters, Pivot, Place, Product, Reflection, Region, Registry,
     RelativeOrientation, RelativePosition, Rotate, Scale, Shear, SurfaceAxis, Swinging, Translate,
 };
-use condyle_model::limit::field::{About, Chart, Ground, Known, LearnedLimit, Settings, snapped};
+use condyle_model::limit::field::{
+    About, Chart, Ends, Ground, Known, LearnedLimit, Settings, Shape, ShapeError, snapped,
+};
 use condyle_model::limit::{Cone, ConePoint, Projection};
 use std::sync::Arc;
 
@@ -167,6 +169,24 @@ fn cone(p: &At<'_>) -> Result<Law, Error> {
     Ok(Law::Cone(JointCone { of, cone }))
 }
 
+/// Three turns whose ends depend on those before.
+fn shape(p: &At<'_>) -> Result<Shape, Error> {
+    let wrong = |at: &At<'_>, error: ShapeError| at.error(error.message, error.help);
+    let ends = |key: &str| -> Result<Ends, Error> {
+        let at = p.key(key)?;
+        let [first, second, lower, upper] =
+            ["first", "second", "lower", "upper"].map(|key| at.key(key)?.numbers());
+        Ends::new(first?, second?, lower?, upper?).map_err(|error| wrong(&at, error))
+    };
+    let axes = p.key("axes")?;
+    let Ok(three) = <[Vec3; 3]>::try_from(axes.vectors()?) else {
+        return Err(axes.error("these are not three directions", "give the axes of three turns"));
+    };
+    let (first, beyond) = (p.key("first")?.some()?, p.key("beyond")?.number()?);
+    let shape = Shape::new(three, first, ends("second")?, ends("third")?, beyond);
+    shape.map_err(|error| wrong(p, error))
+}
+
 fn field(p: &At<'_>) -> Result<Law, Error> {
     let quaternion = |at: &At<'_>| -> Result<Quat, Error> {
         let q = Quat::from(at.some::<4>()?);
@@ -197,7 +217,8 @@ fn field(p: &At<'_>) -> Result<Law, Error> {
     let given = p.key("takes")?;
     let takes = given.list()?.iter().map(At::count).collect::<Result<Vec<_>, _>>()?;
     let sum: usize = takes.iter().map(|count| *count as usize).sum();
-    if samples.is_empty() || sum != samples.len() {
+    let shape = p.perhaps("shape").map(|at| shape(&at)).transpose()?;
+    if shape.is_none() && samples.is_empty() || sum != samples.len() {
         let message = format!("{sum} rotations of takes, but {} are there", samples.len());
         return Err(given.error(message, "give the number of rotations of each take, at least one"));
     }
@@ -233,7 +254,8 @@ fn field(p: &At<'_>) -> Result<Law, Error> {
     let [left, right] = p.key("axes")?.two()?;
     let chart = Chart::of_sides([quaternion(&left)?, quaternion(&right)?]);
     let thinned = p.key("thinned")?.number()?;
-    let ground = Ground { samples, takes, thinned, chart, settings, known };
+    let shape = shape.map(Arc::new);
+    let ground = Ground { samples, takes, thinned, chart, settings, known, shape };
     let mirrored = match p.perhaps("mirrored") {
         Some(at) => Reflection::new(axis(&at)?),
         None => None,

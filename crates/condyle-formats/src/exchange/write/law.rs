@@ -11,7 +11,7 @@ use condyle_model::component::{
     Place, Product, Region, RelativeOrientation, RelativePosition, Rotate, Scale, Shear,
     SurfaceAxis, Swinging, Translate,
 };
-use condyle_model::limit::field::{About, Ground, Known, Settings};
+use condyle_model::limit::field::{About, Ends, Ground, Known, Settings, Shape};
 use condyle_model::limit::{ConePoint, Projection};
 use serde_json::{Value, json};
 
@@ -144,13 +144,13 @@ fn cone(JointCone { of, cone }: &JointCone) -> Value {
 /// A learned limit: axes, and all that it was learned from.
 fn field(FieldLimit { limit, in_reference, in_segment, mirrored, strict }: &FieldLimit) -> Value {
     let About { name, child, reference, source, population, frames, takes: names } = limit.about();
-    let Ground { samples, takes, thinned, chart, settings, known } = &**limit.ground();
+    let Ground { samples, takes, thinned, chart, settings, known, shape } = &**limit.ground();
     let Settings { nodes, radius, gap, hole } = settings;
     let known = known.map(
         |Known { spacing, radius, gap }| json!({ "spacing": spacing, "radius": radius, "gap": gap }),
     );
     let rotations: Value = samples.iter().map(|q| json!(q.to_array())).collect();
-    json!({
+    let mut law = json!({
         "in_reference": in_reference.to_array(),
         "in_segment": in_segment.to_array(),
         "mirrored": mirrored.map(|at| AXES[at.axis() % 3]),
@@ -171,6 +171,29 @@ fn field(FieldLimit { limit, in_reference, in_segment, mirrored, strict }: &Fiel
         "hole": hole,
         "known": known,
         "rotations": rotations,
+    });
+    if let (Some(shape), Some(object)) = (shape, law.as_object_mut()) {
+        object.insert("shape".to_owned(), shape_of(shape));
+    }
+    law
+}
+
+/// Three turns whose ends depend on those before.
+fn shape_of(shape: &Shape) -> Value {
+    let ends = |ends: &Ends| {
+        json!({
+            "first": ends.first(),
+            "second": ends.second(),
+            "lower": ends.lower(),
+            "upper": ends.upper(),
+        })
+    };
+    json!({
+        "axes": vectors(&shape.axes()),
+        "first": shape.first(),
+        "second": ends(shape.second()),
+        "third": ends(shape.third()),
+        "beyond": shape.beyond(),
     })
 }
 

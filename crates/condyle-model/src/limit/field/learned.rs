@@ -72,6 +72,12 @@ impl LearnedLimit {
         self.field.get_or_init(|| (self.make)(&self.ground))
     }
 
+    /// Whether the field was made already.
+    #[must_use]
+    pub fn is_made(&self) -> bool {
+        self.field.get().is_some()
+    }
+
     /// What its file says was learned, without making the field.
     #[must_use]
     pub fn stated(&self) -> Option<&Learned> {
