@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | [`Cloud`] | rotations of one segment in another, gathered from recordings and thinned |
 //! | [`field`] | the default method: signed geodesic distance to the closing of a cloud by empty balls |
+//! | [`dependent`] | limits that depend on another joint: the same at values of a driver |
 //! | [`herda2003`] | spheres in the vector part of quaternions, after Herda, Urtasun, Fua & Hanson 2003: the baseline |
 //! | [`left_out()`] | how far a limit goes beyond recordings, from takes that are left out |
 //! | [`mobility`] | volume, extent, thin regions, and what two limits have in common |
@@ -17,6 +18,7 @@ mod principal;
 mod spread;
 mod uniform;
 
+pub use field::dependent;
 pub use cloud::{Cloud, Gathered, SPACING};
 pub use field::{About, Answer, Field, LearnedLimit, Settings, State, learn};
 pub use left_out::{LeftOut, independent, left_out, percentile};

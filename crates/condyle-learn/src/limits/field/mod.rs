@@ -9,6 +9,7 @@
 
 mod axes;
 mod closing;
+pub mod dependent;
 mod layer;
 mod nearest;
 

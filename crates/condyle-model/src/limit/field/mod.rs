@@ -20,6 +20,7 @@
 
 mod boundary;
 mod chart;
+pub mod dependent;
 mod lattice;
 mod learned;
 mod outer;
@@ -28,8 +29,9 @@ mod projection;
 
 pub use boundary::Boundary;
 pub use chart::Chart;
+pub use dependent::{Dependence, Dependent, Driver, Drivers, Given};
 pub use lattice::Lattice;
-pub use learned::{About, LearnedLimit};
+pub use learned::{About, LearnedLimit, MakeDependent};
 pub use packed::{packed, snapped, unpacked};
 
 use condyle_math::{Quat, Vec3};
@@ -349,7 +351,7 @@ impl Field {
             let near = self.samples.get(sample).copied().filter(inside);
             near.or_else(|| self.samples.iter().copied().find(inside))
         };
-        let found = projection::project(&self.lattice, spline, inward, starts, anchor);
+        let found = projection::project(&projection::Spline(&self.lattice, spline), inward, starts, anchor);
         let Some((mut found, sure)) = found else {
             return same(q);
         };
