@@ -129,7 +129,42 @@ fn cone(JointCone { of, cone }: &JointCone) -> Value {
 }
 
 /// A learned limit: axes, and all that it was learned from.
-fn field(FieldLimit { limit, in_reference, in_segment, mirrored, strict }: &FieldLimit) -> Value {
+/// What a limit depends on.
+fn given(dependence: &Dependence) -> Value {
+    let Dependence { name, reference, drivers, settings, known } = dependence;
+    let DependenceSettings { slope, step, nodes, few, gap } = settings;
+    let (values, rotations) = match drivers {
+        Drivers::Scalars(values) => (Some(json!(values)), None),
+        Drivers::Rotations(all) => {
+            (None, Some(all.iter().map(|q| json!(q.to_array())).collect::<Value>()))
+        }
+    };
+    let known =
+        known.map(|DependenceKnown { radius, gap }| json!({ "radius": radius, "gap": gap }));
+    json!({
+        "name": name,
+        "reference": reference,
+        "values": values,
+        "rotations": rotations,
+        "slope": slope,
+        "step": step,
+        "nodes": nodes,
+        "few": few,
+        "layer": gap,
+        "known": known,
+    })
+}
+
+fn field(law: &FieldLimit) -> Value {
+    let FieldLimit {
+        limit,
+        in_reference,
+        in_segment,
+        driver_in_reference,
+        driver_in_segment,
+        mirrored,
+        strict,
+    } = law;
     let About { name, child, reference, source, population, frames, takes: names } = limit.about();
     let Ground { samples, takes, thinned, chart, settings, known } = &**limit.ground();
     let Settings { nodes, radius, gap, hole } = settings;
@@ -140,6 +175,9 @@ fn field(FieldLimit { limit, in_reference, in_segment, mirrored, strict }: &Fiel
     json!({
         "in_reference": in_reference.to_array(),
         "in_segment": in_segment.to_array(),
+        "driver_in_reference": driver_in_reference.to_array(),
+        "driver_in_segment": driver_in_segment.to_array(),
+        "given": limit.dependence().map(given),
         "mirrored": mirrored.map(|at| AXES[at.axis() % 3]),
         "strict": strict,
         "name": name,
