@@ -4,14 +4,19 @@
 //! | --- | --- |
 //! | `take` | the rotations that one recording shows: by a recipe, by a model and a joint, or as they stand |
 //! | `limit` | a limit from takes: thinned, with a layer from takes that were left out |
+//! | `given` | what a limit depends on, and limits that depend on another joint |
 //! | `query` | what a limit says of rotations |
 //! | `mobility` | a learned limit in numbers, and two compared |
 
+mod given;
 mod limit;
 mod mobility;
 mod query;
 mod take;
 
+pub use given::{
+    Bin, DRIVER_COLUMNS, Driven, HowGiven, LearnedGiven, Wished, bins, drivers_of_table, learn_given,
+};
 pub use limit::{How, LearnedFrom, MOST_INDEPENDENT, learn, spheres};
 pub use mobility::{About, Axis, Region, Report, Side, Versus, report, versus};
 pub use query::{Answered, Limit};

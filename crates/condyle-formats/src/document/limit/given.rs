@@ -1,6 +1,7 @@
 //! What a limit depends on, in its document.
 
 use super::super::model::{number, text};
+use super::super::tree::Value;
 use super::write::{letters, packed_samples};
 use super::{Fields, Reader};
 use crate::text::base64;
@@ -72,7 +73,7 @@ impl Reader<'_> {
         match (given[..].first().copied(), given.len()) {
             (Some("values"), 1) => {
                 let node = fields.get("values")?;
-                if !node.is_text() {
+                if matches!(node.value, Value::List(_)) {
                     let list = self.list(node, "values")?;
                     let all: Vec<Option<f64>> =
                         list.iter().map(|node| self.number(node, "values")).collect();

@@ -240,7 +240,7 @@ fn field(p: &At<'_>) -> Result<Law, Error> {
     let count = ground.samples.len();
     let limit = LearnedLimit::new(about, Arc::new(ground), None, made);
     let limit = match p.perhaps("given") {
-        Some(at) => limit.depending_on(given(&at, count)?, dependent::made),
+        Some(at) => limit.depending_on(depending(&at, count)?, dependent::made),
         None => limit,
     };
     let axes = |key: &str| p.perhaps(key).map_or(Ok(Quat::IDENTITY), |at| quaternion(&at));
@@ -256,7 +256,7 @@ fn field(p: &At<'_>) -> Result<Law, Error> {
 }
 
 /// What a limit with so many samples depends on.
-fn given(p: &At<'_>, samples: usize) -> Result<Dependence, Error> {
+fn depending(p: &At<'_>, samples: usize) -> Result<Dependence, Error> {
     let drivers = match (p.perhaps("values"), p.perhaps("rotations")) {
         (Some(at), None) => {
             let values = at.list()?.iter().map(At::number).collect::<Result<Vec<_>, Error>>()?;
@@ -285,10 +285,14 @@ fn given(p: &At<'_>, samples: usize) -> Result<Dependence, Error> {
     }
     let known = match p.perhaps("known") {
         None => None,
-        Some(at) => Some(DependenceKnown {
-            radius: at.key("radius")?.number()?,
-            gap: at.key("gap")?.number()?,
-        }),
+        Some(at) => {
+            let (radius, gap) = (at.key("radius")?.number()?, at.key("gap")?.number()?);
+            let turn = std::f64::consts::PI;
+            if !(radius > 0.0 && radius < turn && (0.0..turn).contains(&gap)) {
+                return Err(at.error("these are no angles between 0 and half a turn", "correct them"));
+            }
+            Some(DependenceKnown { radius, gap })
+        }
     };
     let reference = p.perhaps("reference").map(|at| at.text().map(str::to_owned)).transpose()?;
     let name = p.key("name")?.text()?.to_owned();

@@ -11,6 +11,9 @@ use condyle_model::component::{
     Product, RelativeOrientation, RelativePosition, Rotate, Scale, Shear, SurfaceAxis, Swinging,
     Translate,
 };
+use condyle_model::limit::field::dependent::{
+    Dependence, DependenceKnown, DependenceSettings, Drivers,
+};
 use condyle_model::limit::field::{About, Ground, Known, Settings};
 use condyle_model::limit::{ConePoint, Projection};
 use serde_json::{Value, json};

@@ -7,6 +7,7 @@
 use super::super::super::percentile;
 use super::super::layer::volume;
 use super::super::nearest::Nodes;
+use super::trend::BESIDE;
 use super::{Bare, Found, Question, bare, finished, radius};
 use condyle_model::limit::field::Ground;
 use condyle_model::limit::field::dependent::{Cells, Dependence, DependenceKnown};
@@ -22,7 +23,7 @@ pub fn layer(
     curves: bool,
     least: f64,
 ) -> (DependenceKnown, Vec<f64>) {
-    let radius = radius(ground, dependence);
+    let radius = radius(ground, dependence, BESIDE);
     let question = Question::new(ground, dependence, radius);
     let number = parts.iter().max().map_or(0, |last| last + 1);
     let unmoved = DependenceKnown { radius, gap: 0.0 };

@@ -9,7 +9,7 @@ use condyle_model::limit::field::snapped;
 use std::sync::Arc;
 
 /// Parts of independent samples that are left out in turn, and of recordings.
-const PARTS: [usize; 2] = [5, 8];
+const PARTS: [usize; 2] = [4, 8];
 
 /// What a limit is learned for, and how.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +38,7 @@ pub struct Asked {
 /// use condyle_learn::limits::dependent::{Asked, Driver, Drivers, Pairs, limit};
 /// use condyle_learn::limits::{About, Settings, State};
 /// use condyle_math::{Quat, Vec3};
-/// // A hinge that opens by 20 degrees more than it is driven by half: 0 to 20 + driver/2.
+/// // A hinge that opens to 20 degrees and 0.4 of its driver.
 /// let (mut rotations, mut drivers) = (vec![], vec![]);
 /// for i in 0..2000 {
 ///     let driver = f64::from(i % 50) * 0.03;

@@ -5,6 +5,7 @@
 //!                              -> cells      here       values of the driver, hinge or field
 //!                              -> fields     slice      the closing at one value, by balls that shrink
 //! parts left out               -> layer      layer      how far the limit goes beyond them
+//!              -> trend      trend      how boundaries move with the driver on the whole, taken away first
 //! ```
 //!
 //! A boundary is taken to move by at most `slope` radians per unit of the driver. So a sample that was taken at another value counts
@@ -16,6 +17,7 @@ mod layer;
 mod limit;
 mod pairs;
 mod slice;
+mod trend;
 
 pub use condyle_model::limit::field::dependent::{
     Dependence, DependenceKnown, DependenceSettings, Dependent, Driver, Drivers, Given, GivenAnswer,
@@ -31,6 +33,7 @@ use super::nearest::Nodes;
 use condyle_math::{Quat, Vec3};
 use condyle_model::limit::field::dependent::{Cells, Child};
 use condyle_model::limit::field::{Ground, Lattice};
+use trend::{BESIDE, Trend};
 use std::f64::consts::PI;
 
 /// A child whose rotations are off one axis by less than this, in radians (root mean square), is a hinge: half a degree.
@@ -43,7 +46,7 @@ const MOST: [usize; 3] = [48, 160, 2000];
 #[must_use]
 pub fn made(ground: &Ground, dependence: &Dependence) -> Dependent {
     let known = dependence.known.unwrap_or_else(|| DependenceKnown {
-        radius: radius(ground, dependence),
+        radius: radius(ground, dependence, BESIDE),
         gap: dependence.settings.gap.unwrap_or(0.0),
     });
     let everything: Vec<usize> = (0..ground.samples.len()).collect();
@@ -57,6 +60,7 @@ struct Question<'a> {
     dependence: &'a Dependence,
     radius: f64,
     hinge: Option<(Quat, Vec3)>,
+    trend: Option<Trend>,
     lattice: Lattice,
     rotations: Vec<Option<Quat>>,
 }
@@ -79,7 +83,9 @@ impl<'a> Question<'a> {
         let lattice = Lattice::new(dependence.settings.nodes.clamp(24, 128));
         let rotations = lattice.nodes();
         let hinge = hinge(ground);
-        Self { ground, dependence, radius, hinge, lattice, rotations }
+        let question =
+            Self { ground, dependence, radius, hinge, trend: None, lattice, rotations };
+        Self { trend: Trend::new(&question), ..question }
     }
 }
 
@@ -108,14 +114,15 @@ fn angle(q: Quat, (middle, axis): (Quat, Vec3)) -> f64 {
 }
 
 /// The radius of empty balls: five times the distance, in rotation and driver together, at which samples are apart.
-fn radius(ground: &Ground, dependence: &Dependence) -> f64 {
+/// `part` is that of the slope by which samples retreat.
+fn radius(ground: &Ground, dependence: &Dependence, part: f64) -> f64 {
     const NEIGHBOURS: usize = 8;
     let count = ground.samples.len();
     let mut far: Vec<f64> = (0..count)
         .step_by(count.div_ceil(150).max(1))
         .map(|at| {
             let mut distances: Vec<f64> = (0..count).map(|other| {
-                apart(ground, dependence, at, other)
+                apart(ground, dependence, part, at, other)
             }).collect();
             let place = NEIGHBOURS.min(count - 1);
             *distances.select_nth_unstable_by(place, f64::total_cmp).1
@@ -130,13 +137,13 @@ fn radius(ground: &Ground, dependence: &Dependence) -> f64 {
     (5.0 * spacing).clamp(least, most)
 }
 
-fn apart(ground: &Ground, dependence: &Dependence, one: usize, other: usize) -> f64 {
+fn apart(ground: &Ground, dependence: &Dependence, part: f64, one: usize, other: usize) -> f64 {
     let (Some(p), Some(q)) = (ground.samples.get(one), ground.samples.get(other)) else {
         return f64::INFINITY;
     };
     let drivers = &dependence.drivers;
     let far = drivers.get(one).zip(drivers.get(other)).map_or(f64::INFINITY, |(a, b)| a.distance(b));
-    p.angle_to(*q) + dependence.settings.slope * far
+    p.angle_to(*q) + part * dependence.settings.slope * far
 }
 
 /// Values of the driver that cover those of some samples, and how many samples are within a step of each.
@@ -168,11 +175,13 @@ fn cells(drivers: &Drivers, step: f64, few: u32, of: &[usize], hinge: bool) -> (
             (Cells::Knots { first, step, known }, counts)
         }
         Drivers::Rotations(values) => {
+            // Bounds of a hinge are two numbers: they are told at more values, each by what is within the same step.
+            let edge = (0.5 * step).cos();
             let step = if hinge { 0.4 * step } else { step };
             let most = MOST[if hinge { 2 } else { 1 }];
             let mut centres: Vec<Quat> = vec![];
             let all: Vec<Quat> = of.iter().filter_map(|at| values.get(*at).copied()).collect();
-            let (near, edge) = ((0.5 * step).cos(), (0.5 * step).cos());
+            let near = (0.5 * step).cos();
             for q in &all {
                 if centres.len() < most && centres.iter().all(|c| c.dot(*q).abs() < near) {
                     centres.push(*q);
@@ -192,29 +201,42 @@ fn cells(drivers: &Drivers, step: f64, few: u32, of: &[usize], hinge: bool) -> (
 
 /// What some samples say without a layer.
 fn bare(question: &Question<'_>, of: &[usize]) -> Found {
-    let Question { ground, dependence, radius, hinge, lattice, rotations } = question;
+    let Question { ground, dependence, radius, hinge, trend, lattice, rotations } = question;
     let settings = &dependence.settings;
     let (cells, counts) =
         cells(&dependence.drivers, settings.step, settings.few, of, hinge.is_some());
     let retreats = |at: Driver| -> Vec<f64> {
         let drivers = &dependence.drivers;
         let far = |sample: &usize| drivers.get(*sample).map_or(f64::INFINITY, |d| d.distance(at));
-        of.iter().map(|sample| settings.slope * far(sample)).collect()
+        let retreat = |sample: &usize| {
+            let most = settings.slope * far(sample);
+            match trend {
+                Some(trend) => BESIDE * most - trend.moved(*sample, at, most),
+                None => most,
+            }
+        };
+        of.iter().map(retreat).collect()
     };
     let samples: Vec<Quat> = of.iter().filter_map(|at| ground.samples.get(*at).copied()).collect();
     let bare = if let Some(hinge) = hinge {
         let angles: Vec<f64> = samples.iter().map(|q| angle(*q, *hinge)).collect();
-        let ends = |retreats: &[f64]| {
+        let drives: Vec<Option<Driver>> = of.iter().map(|s| dependence.drivers.get(*s)).collect();
+        let ends = |at: Option<Driver>| {
             let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-            for (angle, retreat) in angles.iter().zip(retreats) {
-                low = low.min(angle + retreat);
-                high = high.max(angle - retreat);
+            for ((angle, sample), own) in angles.iter().zip(of).zip(&drives) {
+                let most = at.zip(*own).map_or(0.0, |(at, own)| settings.slope * own.distance(at));
+                let (retreat, [below, above]) = match trend.as_ref().zip(at) {
+                    Some((trend, at)) => (BESIDE * most, trend.higher(*sample, at, most)),
+                    None => (most, [0.0; 2]),
+                };
+                low = low.min(angle + below + retreat);
+                high = high.max(angle + above - retreat);
             }
             if low <= high { [low, high] } else { [0.5 * (low + high); 2] }
         };
-        let whole = ends(&vec![0.0; angles.len()]);
+        let whole = ends(None);
         let bounds = (0..cells.len()).map(|cell| match cells.value(cell) {
-            Some(at) => ends(&retreats(at)),
+            Some(at) => ends(Some(at)),
             None => whole,
         });
         let bounds = bounds.collect();
