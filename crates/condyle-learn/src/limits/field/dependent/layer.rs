@@ -10,7 +10,12 @@ use super::super::nearest::Nodes;
 use super::trend::BESIDE;
 use super::{Bare, Found, Question, bare, finished, radius};
 use condyle_model::limit::field::Ground;
-use condyle_model::limit::field::dependent::{Cells, Dependence, DependenceKnown};
+use condyle_model::limit::field::dependent::{
+    Cells, Dependence, DependenceKnown, DependenceSettings,
+};
+
+/// Nodes along an edge of the maps of parts.
+const NODES: usize = 36;
 
 /// Radius and thickness of the layer, and the distances of left-out samples to what the others say, in radians, rising.
 ///
@@ -24,7 +29,10 @@ pub fn layer(
     least: f64,
 ) -> (DependenceKnown, Vec<f64>) {
     let radius = radius(ground, dependence, BESIDE);
-    let question = Question::new(ground, dependence, radius);
+    // Distances to a tenth of a degree are not needed here.
+    let coarse = DependenceSettings { nodes: dependence.settings.nodes.min(NODES), ..dependence.settings };
+    let coarse = Dependence { settings: coarse, ..dependence.clone() };
+    let question = Question::new(ground, &coarse, radius);
     let number = parts.iter().max().map_or(0, |last| last + 1);
     let unmoved = DependenceKnown { radius, gap: 0.0 };
     let mut distances = vec![];

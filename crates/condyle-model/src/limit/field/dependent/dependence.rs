@@ -89,7 +89,7 @@ impl DependenceSettings {
     pub fn of(drivers: &Drivers) -> Self {
         let (step, nodes) = match drivers {
             Drivers::Scalars(_) => (0.25, 64),
-            Drivers::Rotations(_) => (0.4, 48),
+            Drivers::Rotations(_) => (0.4, 40),
         };
         Self { slope: 0.5, step, nodes, few: 12, gap: None }
     }
