@@ -175,12 +175,9 @@ fn field(law: &FieldLimit) -> Value {
         |Known { spacing, radius, gap }| json!({ "spacing": spacing, "radius": radius, "gap": gap }),
     );
     let rotations: Value = samples.iter().map(|q| json!(q.to_array())).collect();
-    json!({
+    let mut written = json!({
         "in_reference": in_reference.to_array(),
         "in_segment": in_segment.to_array(),
-        "driver_in_reference": driver_in_reference.to_array(),
-        "driver_in_segment": driver_in_segment.to_array(),
-        "given": limit.dependence().map(given),
         "mirrored": mirrored.map(|at| AXES[at.axis() % 3]),
         "strict": strict,
         "name": name,
@@ -199,7 +196,14 @@ fn field(law: &FieldLimit) -> Value {
         "hole": hole,
         "known": known,
         "rotations": rotations,
-    })
+    });
+    // Limits that depend on nothing are written as they were before there were others.
+    if let (Some(dependence), Some(keys)) = (limit.dependence(), written.as_object_mut()) {
+        keys.insert("given".to_owned(), given(dependence));
+        keys.insert("driver_in_reference".to_owned(), json!(driver_in_reference.to_array()));
+        keys.insert("driver_in_segment".to_owned(), json!(driver_in_segment.to_array()));
+    }
+    written
 }
 
 fn contact(Contact { before: _, most_gap, law }: &Contact) -> Value {
