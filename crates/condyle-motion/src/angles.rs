@@ -3,8 +3,8 @@
 use crate::columns::cells;
 use crate::{AngleUnit, Table};
 use condyle_diagnostics::{Diagnostic, Error};
-use condyle_model::{CoordinateKind, Model};
-use std::f64::consts::PI;
+use condyle_model::{CoordinateKind, Model, Range};
+use std::f64::consts::{PI, TAU};
 
 /// How a unit is stated.
 const HELP: &str = "state it: `--angles deg` or `--angles rad`, or a line `inDegrees=yes` or `inDegrees=no` in the header";
@@ -31,7 +31,9 @@ impl Table {
     /// A ≤ π              radians, unless some were far beyond the ranges: then it cannot be told
     /// ```
     ///
-    /// A CSV is in radians up to 3π, as this program writes it, which is a note.
+    /// A CSV is in radians up to 3π, as this program writes it, which is a note. There only angles whose ranges are
+    /// kept and narrower than a turn are asked, if there are any that are not 0: what turns on without an end exceeds 3π in
+    /// radians too.
     ///
     /// Joints turn by less than π, so that in radians more than 3π (540°) does not occur, and between them
     /// are turns of the whole body in radians as well as small motions in degrees. Of the smallest
@@ -75,7 +77,11 @@ impl Table {
         if !rule && self.angle_unit != AngleUnit::Unstated {
             return Ok(vec![]);
         }
-        let Some(largest) = self.largest_angle(model) else { return Ok(vec![]) };
+        let with_ends =
+            if rule && model.is_some() { self.largest_angle(model, true) } else { None };
+        let Some(largest) = with_ends.or_else(|| self.largest_angle(model, false)) else {
+            return Ok(vec![]);
+        };
         let Largest { size, column, time, beyond } = largest;
         let column = &self.columns[column];
         let what = format!(
@@ -100,18 +106,21 @@ impl Table {
         Ok(vec![Diagnostic::warning("motion/angle-unit", message).with_help(HELP)])
     }
 
-    fn largest_angle(&self, model: Option<&Model>) -> Option<Largest> {
+    /// The largest of the angles, or of those `with_ends` only: with a range narrower than a turn that is kept; `None` if all
+    /// are 0.
+    fn largest_angle(&self, model: Option<&Model>, with_ends: bool) -> Option<Largest> {
         // Columns of angles, each with its range.
         let angles: Vec<(usize, [f64; 2])> = match model {
             Some(model) => {
                 let turns = cells(model, self).into_iter().filter_map(|cell| {
                     let coordinate = model.coordinate(cell.coordinate);
                     let rotation = coordinate.kind == CoordinateKind::Rotation;
-                    let range = [
-                        coordinate.range.lower.unwrap_or(f64::NEG_INFINITY),
-                        coordinate.range.upper.unwrap_or(f64::INFINITY),
-                    ];
-                    Some((cell.column.filter(|_| rotation)?, range))
+                    let Range { lower, upper, enforced } = coordinate.range;
+                    let range =
+                        [lower.unwrap_or(f64::NEG_INFINITY), upper.unwrap_or(f64::INFINITY)];
+                    let ends = enforced && range[1] - range[0] <= TAU;
+                    let asked = rotation && (ends || !with_ends);
+                    Some((cell.column.filter(|_| asked)?, range))
                 });
                 turns.collect()
             }
@@ -156,7 +165,7 @@ fn is_length(name: &str) -> bool {
 mod tests {
     use super::*;
     use condyle_math::Vec3;
-    use condyle_model::{ModelBuilder, Range};
+    use condyle_model::ModelBuilder;
 
     fn table(columns: &[&str], values: &[f64]) -> Table {
         Table {
@@ -216,6 +225,28 @@ mod tests {
             let mut table = table(&["angle", "total"], &[angle, 500.0]);
             assert_eq!(table.settle_angles(Some(&model), None).is_ok(), unit.is_some(), "{angle}");
             assert_eq!(table.angle_unit, unit.unwrap_or_default(), "{angle}");
+        }
+    }
+
+    #[test]
+    fn what_turns_without_an_end_tells_no_unit_of_a_csv() {
+        let mut b = ModelBuilder::new("dancer");
+        let body = b.segment("body", None);
+        let shank = b.segment("shank", Some(body));
+        b.hinge("ground", body, "heading", Vec3::Y);
+        let (_, knee) = b.hinge("knee", shank, "angle", Vec3::Z);
+        b.coordinate_mut(knee).range = Range::new(-2.0, 0.2);
+        let model = b.build().unwrap();
+        // Two turns, 4π, beside a knee bent by 1.2 rad, or by 69 degrees; a knee that stays at 0 tells nothing.
+        for (angle, unit) in
+            [(-1.2, AngleUnit::Radians), (-69.0, AngleUnit::Degrees), (0.0, AngleUnit::Degrees)]
+        {
+            let mut csv = Table {
+                angle_unit: AngleUnit::RadiansAsRule,
+                ..table(&["heading", "angle"], &[4.0 * PI, angle])
+            };
+            assert_eq!(csv.settle_angles(Some(&model), None).unwrap().len(), 1);
+            assert_eq!(csv.angle_unit, unit, "{angle}");
         }
     }
 }

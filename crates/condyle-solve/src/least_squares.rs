@@ -15,6 +15,8 @@
 //! below `tolerance · F`, the last step is still tried, so that directions in which F is nearly
 //! flat converge to the minimum of the caller's prior.
 
+use crate::cholesky::dot;
+use crate::curvature::RowCurvature;
 use crate::elimination::Elimination;
 use crate::quadratic::{QuadraticProgram, Status, Workspace};
 
@@ -119,6 +121,7 @@ pub struct Solver {
     equality_steps: Vec<f64>,
     equality_values: Vec<f64>,
     inequality_values: Vec<f64>,
+    curvature: RowCurvature,
 }
 
 /// The largest half-width of the trust region, in units of `scale`.
@@ -155,6 +158,7 @@ impl Solver {
             equality_steps: vec![0.0; equalities],
             equality_values: vec![0.0; equalities],
             inequality_values: vec![0.0; inequalities],
+            curvature: RowCurvature::new(n, inequalities),
         }
     }
 
@@ -190,6 +194,7 @@ impl Solver {
         let mut fresh = true;
         let mut near = false;
         let mut polished = false;
+        self.curvature.forget();
         while summary.iterations < options.iterations {
             summary.iterations += 1;
             if fresh {
@@ -200,7 +205,7 @@ impl Solver {
                 self.linearise(problem, false);
                 proposed = self.propose(trust);
             }
-            let Ok(relaxed) = proposed else {
+            let Ok(share) = proposed else {
                 summary.stop = Stop::NotFinite;
                 break;
             };
@@ -209,7 +214,7 @@ impl Solver {
             let promised = self.promise();
             let infeasible = sum_violation(&self.equalities, &self.inequalities);
             let small = promised <= options.tolerance * objective + options.floor;
-            let last = small && !relaxed && violation <= options.feasibility;
+            let last = small && share == 1.0 && violation <= options.feasibility;
             near = promised <= NEAR * objective;
             let mut trial = problem.evaluate(
                 &self.step,
@@ -225,14 +230,16 @@ impl Solver {
             }
             let trial_infeasible = sum_violation(&self.trial_equalities, &self.trial_inequalities);
             let gained = objective - trial + penalty * (infeasible - trial_infeasible);
-            // Relaxed equalities are satisfied by a tenth of the way at most.
-            let expected = promised + penalty * infeasible * if relaxed { 0.1 } else { 1.0 };
+            // Relaxed rows are satisfied by a share of the way only.
+            let expected = promised + penalty * infeasible * share;
             // Near convergence rounding dominates the gain: a step that loses no more is accepted.
             let noise = 1e-14 * objective + options.floor;
             if gained.is_finite() && gained >= 1e-4 * expected - noise {
                 // Armijo condition with c₁ = 1e-4; the ratio of gain to prediction sets the region.
                 problem.accept();
                 fresh = true;
+                let multipliers = self.program.solution().inequality_multipliers();
+                self.curvature.leave(&self.step, &self.local.inequality_rows, multipliers);
                 objective = trial;
                 std::mem::swap(&mut self.equalities, &mut self.trial_equalities);
                 std::mem::swap(&mut self.inequalities, &mut self.trial_inequalities);
@@ -256,7 +263,7 @@ impl Solver {
                 break;
             } else {
                 // A quarter of the rejected step, which may be shorter than the region is wide.
-                fresh = self.local.curved;
+                fresh = self.local.curved | self.curvature.begin();
                 near = false;
                 trust = 0.25 * trust.min(self.step_size());
                 if trust < NARROWEST {
@@ -280,6 +287,8 @@ impl Solver {
     fn linearise<P: Problem>(&mut self, problem: &mut P, curved: bool) {
         self.local.curved = curved;
         problem.linearise(&mut self.local);
+        self.curvature.arrive(&self.local.inequality_rows);
+        self.curvature.add_to(&mut self.local.hessian);
         self.orthonormalise_equalities();
     }
 
@@ -292,13 +301,13 @@ impl Solver {
         self.elimination.apply(&mut self.equality_steps);
     }
 
-    /// Second-order correction: adds the shortest step that satisfies the equalities linearised
-    /// with their values at the trial point. Returns whether the step changed.
+    /// Second-order correction: adds the shortest step that satisfies the equalities, and the inequalities that the trial
+    /// point violates, linearised with their values there. Returns whether the step changed.
     ///
     /// Without it the merit function rejects good steps along a curved constraint again and again
     /// (the Maratos effect).
     fn bend(&mut self, feasibility: f64) -> bool {
-        let off = self.trial_equalities.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
+        let off = violation(&self.trial_equalities, &self.trial_inequalities);
         if !off.is_finite() || off <= 0.003 * feasibility {
             return false;
         }
@@ -315,15 +324,28 @@ impl Solver {
                 *d += along * r;
             }
         }
+        // Rows of inequalities are few and seldom violated together: each for itself, and only where the way back is short
+        // beside the step, which then went along the limit.
+        let short = 0.1 * dot(&self.step, &self.step);
+        for (row, g) in
+            self.local.inequality_rows.chunks_exact(n.max(1)).zip(&self.trial_inequalities)
+        {
+            let square: f64 = row.iter().map(|r| r * r).sum();
+            if *g < 0.0 && g * g < short * square {
+                for (d, r) in self.step.iter_mut().zip(row) {
+                    *d -= g / square * r;
+                }
+            }
+        }
         for i in 0..n {
             self.step[i] = self.step[i].max(self.local.lower[i]).min(self.local.upper[i]);
         }
         true
     }
 
-    /// Solves the quadratic program within the trust region; returns whether its constraints were
-    /// relaxed.
-    fn propose(&mut self, trust: f64) -> Result<bool, Status> {
+    /// Solves the quadratic program within the trust region; returns the share of the violation that
+    /// the step is to end.
+    fn propose(&mut self, trust: f64) -> Result<f64, Status> {
         for i in 0..self.step.len() {
             // The step 0 must stay possible, also where the point violates a bound by rounding.
             let reach = trust * self.scale[i];
@@ -333,7 +355,7 @@ impl Solver {
         let mut ridge = 1e-12;
         loop {
             match self.solve_program() {
-                Ok(relaxed) => return Ok(relaxed),
+                Ok(share) => return Ok(share),
                 // A direction of small curvature was lost to rounding: add a multiple of the
                 // identity (Levenberg-Marquardt), from 1e-12 of the largest diagonal entry upwards,
                 // and retry.
@@ -349,12 +371,14 @@ impl Solver {
         }
     }
 
-    /// Solves the program with the present Hessian; returns whether its constraints were relaxed.
+    /// Solves the program with the present Hessian; returns the share of the violation that the step is to end.
     ///
     /// Where the trust region is too small to satisfy the linearised constraints, their violation
-    /// need only be reduced by a tenth, and failing that, not at all.
-    fn solve_program(&mut self) -> Result<bool, Status> {
-        for share in [1.0, 0.1, 0.0] {
+    /// need only be reduced by a tenth, failing that by half of what each alone could be within the region, and
+    /// failing that, not at all.
+    fn solve_program(&mut self) -> Result<f64, Status> {
+        for share in [1.0, 0.1, f64::NAN, 0.0] {
+            let share = if share.is_nan() { 0.5 * self.reducible().min(0.2) } else { share };
             for (value, full) in self.equality_values.iter_mut().zip(&self.equality_steps) {
                 *value = share * full;
             }
@@ -374,14 +398,33 @@ impl Solver {
             match solution.status() {
                 Status::Solved => {
                     self.step.copy_from_slice(solution.d());
-                    return Ok(share < 1.0);
+                    return Ok(share);
                 }
                 Status::Infeasible | Status::IterationLimit => {}
                 failed => return Err(failed),
             }
         }
         self.step.fill(0.0);
-        Ok(true)
+        Ok(0.0)
+    }
+
+    /// The smallest share of its violation by which a linearised constraint can be reduced within the bounds of a step.
+    fn reducible(&self) -> f64 {
+        let n = self.step.len();
+        let share = |row: &[f64], needed: f64| {
+            // The most that the row times the step can be, in the direction that is needed.
+            let ends = self.lower.iter().zip(&self.upper);
+            let most = row.iter().zip(ends).map(|(r, (lower, upper))| {
+                if r * needed > 0.0 { r.abs() * upper } else { -r.abs() * lower }
+            });
+            if needed == 0.0 { f64::INFINITY } else { most.sum::<f64>() / needed.abs() }
+        };
+        let LocalModel { equality_rows, inequality_rows, .. } = &self.local;
+        let equalities = equality_rows.chunks_exact(n.max(1)).zip(&self.equality_steps);
+        let inequalities = inequality_rows.chunks_exact(n.max(1)).zip(&self.inequalities);
+        let equalities = equalities.map(|(row, c)| share(row, *c));
+        let inequalities = inequalities.map(|(row, g)| share(row, (-g).max(0.0)));
+        equalities.chain(inequalities).fold(f64::INFINITY, f64::min)
     }
 
     /// The decrease of F that the model predicts for the step: -(gᵀd + ½ dᵀHd).

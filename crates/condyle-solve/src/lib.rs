@@ -35,6 +35,7 @@
 //! ```
 
 pub mod cholesky;
+mod curvature;
 mod elimination;
 pub mod least_squares;
 pub mod quadratic;

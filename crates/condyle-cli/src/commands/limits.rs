@@ -1,5 +1,6 @@
-//! `condyle limits`: what learned limits say of rotations, and of the mobility of a joint.
+//! `condyle limits`: what learned limits say of rotations, of the mobility of a joint, and to engines.
 
+mod engine;
 mod report;
 
 use super::Outcome;
@@ -31,6 +32,8 @@ enum What {
     Query(Query),
     /// Tell how mobile a joint is, what to record next, and what two limits have in common.
     Report(report::Report),
+    /// Tell what game and robot engines can hold of a limit, in their own numbers, and what is lost.
+    Engine(engine::Engine),
 }
 
 impl Limits {
@@ -38,6 +41,7 @@ impl Limits {
         match self.what {
             What::Query(query) => query.run(),
             What::Report(report) => report.run(),
+            What::Engine(engine) => engine.run(),
         }
     }
 }

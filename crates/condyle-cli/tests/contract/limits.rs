@@ -1,4 +1,4 @@
-//! `condyle learn limits`, `condyle limits query` and `condyle limits report`.
+//! `condyle learn limits`, `condyle limits query`, `condyle limits report` and `condyle limits engine`.
 
 use super::{Folder, near, number};
 use std::f64::consts::PI;
@@ -322,4 +322,50 @@ fn markers_give_rotations_by_a_recipe() {
     // It was raised to 57.3 degrees.
     let far = number(&json["rotations"][1]["distance_deg"]);
     assert!(far < -35.0 && far > -53.0, "{far}");
+}
+
+/// Of a ball of 60 degrees MuJoCo's ball joint is right, and cones are not; the reach cone as a document loads, and what it
+/// allows at the identity is what the query calls valid.
+#[test]
+fn a_limit_is_told_to_engines() {
+    let folder = Folder::new("limits-engine");
+    folder.write("cloud.csv", csv(&ball(3000)));
+    folder.condyle(&["learn", "limits", "cloud.csv", "-o", "L.toml"]).expect(0);
+    let json =
+        folder.condyle(&["limits", "engine", "L.toml", "--json", "--directions", "8"]).json();
+    let engines = json["engines"].as_array().expect("engines");
+    let of = |law: &str| engines.iter().find(|e| e["law"] == law).expect("the law");
+    let joint = &of("mujoco ball")["settings"]["joint"][0];
+    assert_eq!(joint["type"], "ball");
+    near(number(&joint["range"][1]).to_degrees(), 60.0, 1.5);
+    let lost = |fitted: &serde_json::Value| {
+        let part = |name: &str| number(&fitted["loss"][name]["of_field"]);
+        part("false_accepts") + part("false_rejects")
+    };
+    assert!(lost(of("mujoco ball")) < 0.05, "{}", lost(of("mujoco ball")));
+    // The best circular cone with a twist: of a ball of 60 degrees at least a tenth is judged wrongly.
+    assert!(lost(of("jolt cone")) > 0.1 && lost(of("jolt pyramid")) > lost(of("jolt cone")));
+    // (θ - sin θ)/π of all rotations turn by less than θ.
+    near(number(&json["field_share"]) / ((PI / 3.0 - (PI / 3.0).sin()) / PI), 1.0, 0.05);
+    assert_eq!(json["reach_cone"]["directions"].as_array().map(Vec::len), Some(8));
+    // Files: the format follows from the ending; inside, nothing is accepted that is not valid.
+    let run = ["limits", "engine", "L.toml", "--directions", "8", "--inside", "-o"];
+    let with = |path| run.iter().copied().chain([path]).collect::<Vec<&str>>();
+    let said = folder.condyle(&with("T.toml")).expect(0);
+    assert!(said.contains("accepts 0.0 %") && !said.contains("accepts 1"), "{said}");
+    let model = folder.condyle(&["info", "T.toml", "--json"]).json();
+    assert_eq!(model["segments"].as_array().map(Vec::len), Some(2));
+    let text = folder.condyle(&["check", "T.toml"]).expect(0);
+    assert!(text.contains("no findings"), "{text}");
+    let lines = folder.read("T.csv");
+    let rows: Vec<&str> = lines.lines().filter(|line| !line.starts_with('#')).collect();
+    assert_eq!(rows[0], "azimuth_deg,swing_deg,dx,dy,dz,twist_min_deg,twist_max_deg");
+    assert_eq!(rows.len(), 9);
+    // What cannot be.
+    let refused = folder.condyle(&with("T.xml")).refused();
+    assert!(refused.contains(".json, .csv or .toml"), "{refused}");
+    let refused = folder.condyle(&["limits", "engine", "L.toml", "--directions", "5"]).refused();
+    assert!(refused.contains("6"), "{refused}");
+    let refused = folder.condyle(&["limits", "engine", "L.toml", "--bone", "0,0,0"]).refused();
+    assert!(refused.contains("not all 0"), "{refused}");
 }

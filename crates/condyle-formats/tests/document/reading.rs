@@ -143,3 +143,36 @@ fn warnings_have_places() {
         "{warnings:?}"
     );
 }
+
+#[test]
+fn each_number_is_in_the_unit_of_the_text_that_has_it() {
+    // A skeleton in radians whose ranges are not kept, and a document in degrees that adds to it.
+    let part = format!(
+        "{HEAD}[segment.hand]\n[joint_set.wrist.coordinate.turn]\nrange = [-3, 0]\ndefault = -0.5\n\
+         typical = [-2, -1]\nrest = -0.25\nstiffness = 1e-5\nenforced = false\n\
+         [joint_set.wrist.coordinate.bend]\nrange = [-1, 1]\nenforced = false\n\
+         [joint_set.wrist.coordinate.tilt]\nrange = [-1, 1]\nenforced = false\n\
+         [posture.both]\nsum = {{ turn = 1, bend = 1 }}\nrest = 0.5\nstiffness = 1e-5\n"
+    );
+    let text = format!(
+        "{HEAD}angles = \"deg\"\ninclude = [\"part.toml\"]\n\
+         [joint_set.wrist.coordinate.turn]\nlocked = true\n\
+         [joint_set.wrist.coordinate.bend]\nrange = [-90, 60]\n\
+         [joint_set.wrist.coordinate.tilt]\nenforced = true\n[posture.both]\nstiffness = 2e-5\n"
+    );
+    let model = document::read(&text, &mut |_| Ok(part.clone())).unwrap().value.model;
+    let of = |name: &str| model.coordinate(model.find_coordinate(name).unwrap());
+    let turn = of("turn");
+    assert_eq!(
+        (turn.range.lower, turn.range.upper, turn.range.enforced),
+        (Some(-3.0), Some(0.0), false)
+    );
+    assert_eq!((turn.default[0], turn.typical, turn.locked), (-0.5, Some([-2.0, -1.0]), true));
+    // The range of the document is kept, as those of all documents are; the skeleton's own are not unless it is said.
+    let bend = of("bend");
+    assert!((bend.range.lower.unwrap() + std::f64::consts::FRAC_PI_2).abs() < 1e-15);
+    assert!(bend.range.enforced);
+    assert_eq!((of("tilt").range.lower, of("tilt").range.enforced), (Some(-1.0), true));
+    let rests: Vec<f64> = model.postures().iter().map(|posture| posture.rest).collect();
+    assert!(rests.contains(&0.5) && rests.contains(&-0.25), "{rests:?}");
+}

@@ -3,6 +3,7 @@
 //! | module | what |
 //! | --- | --- |
 //! | [`Cloud`] | rotations of one segment in another, gathered from recordings and thinned |
+//! | [`engine`] | the nearest cone with twist and the nearest reach cone, for game and robot engines |
 //! | [`field`] | the default method: signed geodesic distance to the closing of a cloud by empty balls |
 //! | [`dependent`] | limits that depend on another joint: the same at values of a driver |
 //! | [`herda2003`] | spheres in the vector part of quaternions, after Herda, Urtasun, Fua & Hanson 2003: the baseline |
@@ -10,6 +11,7 @@
 //! | [`mobility`] | volume, extent, thin regions, and what two limits have in common |
 
 mod cloud;
+pub mod engine;
 pub mod field;
 pub mod herda2003;
 mod left_out;

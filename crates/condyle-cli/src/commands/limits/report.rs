@@ -43,7 +43,7 @@ enum Mirror {
     Z,
 }
 
-fn axis(text: &str) -> Result<Axis, String> {
+pub(super) fn axis(text: &str) -> Result<Axis, String> {
     let parts: Vec<f64> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
     match parts[..] {
         [x, y, z]
@@ -59,7 +59,7 @@ fn axis(text: &str) -> Result<Axis, String> {
 }
 
 /// The field of a file; spheres have no distance.
-fn field(path: &Path) -> Result<Box<LearnedLimit>, Failure> {
+pub(super) fn field(path: &Path) -> Result<Box<LearnedLimit>, Failure> {
     match warned(path, open::any_limit(path)?) {
         Limit::Field(limit) => Ok(limit),
         Limit::Spheres(_) => Err(Failure::new(format!(

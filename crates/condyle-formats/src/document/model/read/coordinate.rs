@@ -39,11 +39,13 @@ impl ModelReader<'_> {
                 }
             }
         }
-        let unit = self.unit(&fields, coordinate.kind);
+        let stated = self.unit(&fields, coordinate.kind);
+        let rotation = coordinate.kind == CoordinateKind::Rotation;
         let orientation = coordinate.kind == CoordinateKind::Orientation;
         coordinate.default = coordinate.kind.neutral();
         if let Some(node) = fields.get("default") {
             if !orientation {
+                let unit = self.factor(stated, rotation, node);
                 coordinate.default[0] = unit * self.number(node, "default").unwrap_or(0.0);
             } else if let Some(q) = self.some::<4>(node, "default") {
                 let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -60,6 +62,7 @@ impl ModelReader<'_> {
                 let message = "an orientation has no range";
                 self.texts.error(node.spot, "model/range", message, "omit it");
             } else {
+                let unit = self.factor(stated, rotation, node);
                 self.range(node, unit, &mut coordinate.range);
             }
         }
@@ -72,30 +75,38 @@ impl ModelReader<'_> {
                     "give what people reach on average, as in a range; omit it for an orientation";
                 self.texts.error(node.spot, "model/range", message, help);
             }
+            let unit = self.factor(stated, rotation, node);
             coordinate.typical = Some(ends.map(|end| unit * end));
         }
         let held = coordinate.range.lower.is_some() || coordinate.range.upper.is_some();
-        coordinate.range.enforced = self.flag(fields.get("enforced"), "enforced", held);
+        // What an included text says of its own range does not hold for the range of the text that includes it: those
+        // are numbered before what they include.
+        let ours = |flag: &&Node| {
+            fields.get("range").is_none_or(|range| flag.spot.file <= range.spot.file)
+        };
+        let enforced = fields.get("enforced").filter(ours);
+        coordinate.range.enforced = self.flag(enforced, "enforced", held);
         coordinate.locked = self.flag(fields.get("locked"), "locked", false);
         coordinate.drives =
             fields.get("drives").and_then(|n| self.text(n, "drives")).map(|n| n.text);
         coordinate.source =
             fields.get("source").and_then(|n| self.text(n, "source")).map(|n| n.text);
-        coordinate.held = self.rest(&fields, unit, coordinate.default[0]);
+        coordinate.held = self.rest(&fields, stated, rotation, coordinate.default[0]);
         coordinate.follows = fields.get("follows").and_then(|n| self.text(n, "follows"));
         coordinate
     }
 
-    /// The factor of a coordinate's default and range.
-    fn unit(&mut self, fields: &Fields<'_>, kind: CoordinateKind) -> f64 {
+    /// The factor to radians or metres of a value of a coordinate: that which its table states, else that of the text in
+    /// which the value itself stands, which may be another one than that of the table.
+    pub(super) fn factor(&self, stated: Option<f64>, rotation: bool, value: &Node) -> f64 {
+        let usual = || if rotation { self.angle_unit(value.spot) } else { 1.0 };
+        stated.unwrap_or_else(usual)
+    }
+
+    /// The factor that a coordinate's table states by name.
+    fn unit(&mut self, fields: &Fields<'_>, kind: CoordinateKind) -> Option<f64> {
         const DEGREE: f64 = std::f64::consts::PI / 180.0;
-        let usual = match kind {
-            CoordinateKind::Rotation => self.angle_unit(fields.spot),
-            _ => 1.0,
-        };
-        let Some(name) = fields.get("unit").and_then(|n| self.text(n, "unit")) else {
-            return usual;
-        };
+        let name = fields.get("unit").and_then(|n| self.text(n, "unit"))?;
         let known: &[(&str, f64)] = match kind {
             CoordinateKind::Rotation => &[("rad", 1.0), ("deg", DEGREE)],
             CoordinateKind::Translation => &[("m", 1.0), ("cm", 0.01), ("mm", 0.001)],
@@ -110,7 +121,7 @@ impl ModelReader<'_> {
             CoordinateKind::Scale | CoordinateKind::Orientation => &[],
         };
         if let Some((_, factor)) = known.iter().find(|(unit, _)| *unit == name.text) {
-            return *factor;
+            return Some(*factor);
         }
         let units: Vec<&str> = known.iter().map(|(unit, _)| *unit).collect();
         let message = format!("a coordinate of kind {} has no unit `{}`", kind.name(), name.text);
@@ -119,7 +130,7 @@ impl ModelReader<'_> {
             _ => format!("units are: {}", units.join(", ")),
         };
         self.texts.error(name.spot, "document/unit", message, help);
-        usual
+        None
     }
 
     fn range(&mut self, node: &Node, unit: f64, range: &mut Range) {

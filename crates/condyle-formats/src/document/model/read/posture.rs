@@ -18,7 +18,7 @@ impl ModelReader<'_> {
         let stiffness = stiffness.and_then(|node| self.number(node, "stiffness"));
         let rest = self.number_or(&fields, "rest", 0.0);
         let source = fields.get("source").and_then(|n| self.text(n, "source")).map(|n| n.text);
-        let angle_unit = self.angle_unit(name.spot);
+        let angle_unit = self.angle_unit(fields.get("rest").map_or(name.spot, |node| node.spot));
         let Some(entries) = sum.map(|node| self.entries(node, "sum")) else { return };
         let factor = |e: &Entry| Some((e.key.clone(), self.number(&e.node, &e.key.text)?));
         let sum: Vec<_> = entries.iter().map(factor).collect();
@@ -29,12 +29,13 @@ impl ModelReader<'_> {
         }
     }
 
-    /// The value at rest and the stiffness of a single coordinate, in `unit`; it rests at its default
+    /// The value at rest and the stiffness of a single coordinate, in the unit that it states; it rests at its default
     /// unless a value is given.
     pub(super) fn rest(
         &mut self,
         fields: &Fields<'_>,
-        unit: f64,
+        stated: Option<f64>,
+        rotation: bool,
         default: f64,
     ) -> Option<[f64; 2]> {
         let rest = fields.get("rest");
@@ -48,7 +49,10 @@ impl ModelReader<'_> {
         };
         let stiffness = self.number(stiffness, "stiffness");
         let rest = match rest {
-            Some(node) => self.number(node, "rest").map(|value| unit * value),
+            Some(node) => {
+                let unit = self.factor(stated, rotation, node);
+                self.number(node, "rest").map(|value| unit * value)
+            }
             None => Some(default),
         };
         Some([rest?, stiffness?])

@@ -150,7 +150,10 @@ impl ModelReader<'_> {
     fn rib(&mut self, node: &Node) -> Option<Form> {
         let fields = self.table(node, node.spot, "rib".to_owned(), keys::RIB);
         let at = self.vector_or(&fields, "at")?;
-        let unit = self.angle_unit(fields.spot);
+        let angle_of = |reader: &Self, key: &str| {
+            reader.angle_unit(fields.get(key).map_or(fields.spot, |node| node.spot))
+        };
+        let unit = angle_of(self, "angle");
         let mut number = |key: &str, wanted: &str| {
             let node = self.required(&fields, key, wanted)?;
             self.number(node, key)
@@ -169,7 +172,7 @@ impl ModelReader<'_> {
             }
             (None, None) => {
                 let [pump, swing, plane] = ["pump", "swing", "plane"]
-                    .map(|key| self.number_or(&fields, key, 0.0).map(|angle| unit * angle));
+                    .map(|key| Some(angle_of(self, key) * self.number_or(&fields, key, 0.0)?));
                 Rib::directions(pump?, swing?, plane?)
             }
             (Some(_), None) => return self.lone(&fields, "outward"),
