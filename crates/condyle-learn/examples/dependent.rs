@@ -18,7 +18,9 @@ fn main() {
     let list = arguments.first().map_or("500,1500,5000", String::as_str);
     let counts: Vec<usize> = list.split(',').filter_map(|n| n.parse().ok()).collect();
     let number = |at: usize| arguments.get(at).and_then(|n| n.parse::<f64>().ok());
-    println!("law | samples | at 2° | at 3° (outside, inside) | without driver | cells | layer | ball | seconds, made");
+    println!(
+        "law | samples | at 2° | at 3° (outside, inside) | without driver | cells | layer | ball | seconds, made"
+    );
     for law in LAWS {
         if let Some(only) = arguments.get(3)
             && !law.name.contains(only.as_str())
@@ -32,7 +34,8 @@ fn main() {
             let mut settings = DependenceSettings::of(&drivers);
             settings.slope = number(1).unwrap_or(settings.slope);
             settings.step = number(2).unwrap_or(settings.step);
-            let pairs = Pairs::gather(&[(&rotations, drivers)], 0.0, settings.slope).expect("pairs");
+            let pairs =
+                Pairs::gather(&[(&rotations, drivers)], 0.0, settings.slope).expect("pairs");
             let asked = Asked {
                 about: About::default(),
                 name: "driver".into(),
@@ -51,9 +54,7 @@ fn main() {
                 .each_ref()
                 .map(|points| accuracy(points, |q, driver| given.distance(q, driver) >= 0.0));
             // Without its driver a hinge has the bounds of all.
-            let whole = accuracy(&tests[1], |q, _| {
-                given.whole_distance(q) >= 0.0
-            });
+            let whole = accuracy(&tests[1], |q, _| given.whole_distance(q) >= 0.0);
             let made = given.made();
             println!(
                 "{} | {count} | {:.3} | {:.3} ({:.3}, {:.3}) | {:.3} ({:.3}, {:.3}) | {} | {:.1}° | {:.0}° | {learning:.1}, {making:.1}",

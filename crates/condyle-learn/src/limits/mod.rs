@@ -20,8 +20,8 @@ mod principal;
 mod spread;
 mod uniform;
 
-pub use field::dependent;
 pub use cloud::{Cloud, Gathered, SPACING};
+pub use field::dependent;
 pub use field::{About, Answer, Field, LearnedLimit, Settings, State, learn};
 pub use left_out::{LeftOut, independent, left_out, percentile};
 pub use uniform::uniform;

@@ -22,9 +22,24 @@ pub(crate) struct Law {
 
 pub(crate) const LAWS: [Law; 4] = [
     Law { name: "twist that widens with an angle", driver: bent, holds: twist, hinge: false },
-    Law { name: "cone that widens with the parent's swing", driver: swung, holds: cone, hinge: false },
-    Law { name: "hinge whose range follows an angle", driver: bent, holds: hinge_of_angle, hinge: true },
-    Law { name: "hinge whose range follows the parent's swing", driver: swung, holds: hinge_of_swing, hinge: true },
+    Law {
+        name: "cone that widens with the parent's swing",
+        driver: swung,
+        holds: cone,
+        hinge: false,
+    },
+    Law {
+        name: "hinge whose range follows an angle",
+        driver: bent,
+        holds: hinge_of_angle,
+        hinge: true,
+    },
+    Law {
+        name: "hinge whose range follows the parent's swing",
+        driver: swung,
+        holds: hinge_of_swing,
+        hinge: true,
+    },
 ];
 
 fn degrees(radians: f64) -> f64 {
@@ -115,7 +130,12 @@ impl Law {
     }
 
     /// Rotations at an angle from the boundary at a driver, give or take a tenth, half of them inside.
-    pub(crate) fn at(&self, angle: f64, count: usize, random: &mut Random) -> Vec<(Driver, Quat, bool)> {
+    pub(crate) fn at(
+        &self,
+        angle: f64,
+        count: usize,
+        random: &mut Random,
+    ) -> Vec<(Driver, Quat, bool)> {
         let mut found = [vec![], vec![]];
         while found.iter().any(|list| list.len() < count / 2) {
             let driver = (self.driver)(random);
@@ -132,10 +152,15 @@ impl Law {
             let (mut near, mut far) = (0.0, 1.0);
             for _ in 0..20 {
                 let middle = 0.5 * (near + far);
-                if holds(from * Quat::exp(way * middle)) == inside { near = middle } else { far = middle }
+                if holds(from * Quat::exp(way * middle)) == inside {
+                    near = middle
+                } else {
+                    far = middle
+                }
             }
             let edge = from * Quat::exp(way * near);
-            let q = (edge * Quat::exp(about(random) * (angle * (1.0 + 0.2 * random.unit())))).normalized();
+            let q = (edge * Quat::exp(about(random) * (angle * (1.0 + 0.2 * random.unit()))))
+                .normalized();
             let inside = holds(q);
             let same = |part: f64, random: &mut Random| {
                 (0..400).all(|_| holds(q * Quat::exp(about(random) * (angle * part))) == inside)

@@ -87,7 +87,10 @@ fn slopes_are_those_of_differences() {
             assert!((sloped.distance - given.distance(q, driver)).abs() < 1e-12);
             let close = |exact: f64, ends: [f64; 2]| {
                 let difference = (ends[0] - ends[1]) / (2.0 * step);
-                assert!((exact - difference).abs() < 1e-6 * exact.abs().max(1.0), "{exact} {difference}");
+                assert!(
+                    (exact - difference).abs() < 1e-6 * exact.abs().max(1.0),
+                    "{exact} {difference}"
+                );
             };
             for (axis, slope) in Vec3::UNITS.into_iter().zip(sloped.child.to_array()) {
                 let at = |sign: f64| given.distance(q * Quat::exp(axis * (sign * step)), driver);

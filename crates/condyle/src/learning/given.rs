@@ -11,8 +11,8 @@ use condyle_math::Quat;
 use condyle_model::{CoordinateKind, Model};
 use condyle_motion::{Motion, Orientations, Recording, Table};
 
-use super::limit::{How, about, are_independent, raw, warnings};
 use super::Take;
+use super::limit::{How, about, are_independent, raw, warnings};
 use condyle_learn::limits::dependent::Dependence;
 
 /// What a limit is to depend on.
@@ -49,7 +49,11 @@ fn column(table: &Table, name: &str) -> Option<usize> {
 ///
 /// # Errors
 /// `given/columns` if the table has none of these.
-pub fn drivers_of_table(table: &Table, name: &str, turns: Option<bool>) -> Result<Vec<Option<Driver>>, Error> {
+pub fn drivers_of_table(
+    table: &Table,
+    name: &str,
+    turns: Option<bool>,
+) -> Result<Vec<Option<Driver>>, Error> {
     let rows = 0..table.rows();
     let cell = |row: usize, at: usize| table.row(row).get(at).copied().unwrap_or(f64::NAN);
     let scalar = [(name.to_owned(), 1.0), (format!("{name}_deg"), 1f64.to_radians())];
@@ -72,7 +76,8 @@ pub fn drivers_of_table(table: &Table, name: &str, turns: Option<bool>) -> Resul
         Some(false) => format!("`{name}` in radians, or `{name}_deg` in degrees"),
         None => format!("`{name}`, `{name}_deg`, or gx, gy, gz, gw"),
     };
-    let message = format!("the table does not tell `{name}`: its columns are {}", listed(&table.columns));
+    let message =
+        format!("the table does not tell `{name}`: its columns are {}", listed(&table.columns));
     Err(Error::new("given/columns", message).with_help(format!("add the columns {wanted}")))
 }
 
@@ -121,7 +126,8 @@ pub(super) fn of_markers(
     found: &mut Orientated,
 ) -> Result<Driven, Error> {
     let Some((_, recipe)) = &wished.recipe else {
-        let error = Error::new("given/recipe", "how markers give what the limit depends on is not said");
+        let error =
+            Error::new("given/recipe", "how markers give what the limit depends on is not said");
         return Err(error.with_help("give a second recipe with --given-recipe"));
     };
     let turned = recipe.rotations_of(recording, subject)?;
@@ -174,7 +180,11 @@ pub(super) fn of_sensors(
 }
 
 /// Of a table of rotations.
-pub(super) fn of_table(wished: &Wished, table: &Table, found: &mut Orientated) -> Result<Driven, Error> {
+pub(super) fn of_table(
+    wished: &Wished,
+    table: &Table,
+    found: &mut Orientated,
+) -> Result<Driven, Error> {
     let drivers = drivers_of_table(table, &wished.name, None)?;
     Ok(kept(found, &drivers, wished.name.clone(), wished.reference.clone()))
 }
@@ -219,9 +229,9 @@ pub fn learn_given(
     let raw = raw(takes);
     let independent = are_independent(&raw);
     let driven: Option<Vec<&Driven>> = takes.iter().map(|take| take.given.as_ref()).collect();
-    let driven = driven.filter(|all| !all.is_empty()).ok_or_else(|| {
-        Error::new("given/takes", "not all takes tell what the limit depends on")
-    })?;
+    let driven = driven
+        .filter(|all| !all.is_empty())
+        .ok_or_else(|| Error::new("given/takes", "not all takes tell what the limit depends on"))?;
     // A take of which nothing is left is of no kind.
     let kinds = |d: &&&Driven| !d.drivers.is_empty();
     let first = driven.iter().find(kinds).or(driven.first()).copied();
@@ -286,7 +296,9 @@ pub fn bins(limit: &LearnedLimit) -> Option<(&Dependence, Vec<Bin>)> {
     let made = given.made();
     let mut bins = vec![];
     for cell in 0..made.cells.len() {
-        let (Some(at), Some(share)) = (made.cells.value(cell), made.shares.get(cell)) else { continue };
+        let (Some(at), Some(share)) = (made.cells.value(cell), made.shares.get(cell)) else {
+            continue;
+        };
         // Before and behind the values that were recorded, what the nearest say goes on.
         let samples = made.counts.get(cell).copied().unwrap_or(0);
         if matches!(at, Driver::Scalar(_)) && (cell == 0 || cell + 1 == made.cells.len()) {

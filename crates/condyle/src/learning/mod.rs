@@ -9,18 +9,19 @@
 //! | `engine` | a learned limit in the numbers of game and robot engines |
 //! | `mobility` | a learned limit in numbers, and two compared |
 
-mod given;
 mod engine;
+mod given;
 mod limit;
 mod mobility;
 mod query;
 mod take;
 
-pub use given::{
-    Bin, DRIVER_COLUMNS, Driven, HowGiven, LearnedGiven, Wished, bins, drivers_of_table, learn_given,
-};
 pub use condyle_learn::limits::engine::{Aim, ConeTwist, Law, Loss, Lost, ReachCone};
 pub use engine::{Engines, Fitted, engines, reach_document};
+pub use given::{
+    Bin, DRIVER_COLUMNS, Driven, HowGiven, LearnedGiven, Wished, bins, drivers_of_table,
+    learn_given,
+};
 pub use limit::{How, LearnedFrom, MOST_INDEPENDENT, learn, spheres};
 pub use mobility::{About, Axis, Region, Report, Side, Versus, report, versus};
 pub use query::{Answered, Limit};

@@ -47,7 +47,11 @@ pub(in crate::commands) fn bins_json(limit: &LearnedLimit) -> Value {
 pub(in crate::commands) fn bins_text(limit: &LearnedLimit) -> String {
     let Some((dependence, bins)) = learning::bins(limit) else { return String::new() };
     let Dependence { name, reference, .. } = dependence;
-    let of = if bins.first().is_some_and(|bin| bin.bounds.is_some()) { "a turn" } else { "all rotations" };
+    let of = if bins.first().is_some_and(|bin| bin.bounds.is_some()) {
+        "a turn"
+    } else {
+        "all rotations"
+    };
     let within = reference.as_ref().map_or(String::new(), |r| format!(" in {r}"));
     let mut shares: Vec<f64> = bins.iter().map(|bin| bin.share).collect();
     shares.sort_by(f64::total_cmp);

@@ -10,8 +10,18 @@ use condyle_model::limit::field::snapped;
 use std::fmt::Write;
 
 const KEYS: &[&str] = &[
-    "name", "reference", "values", "packed", "rotations", "slope", "step", "nodes", "few", "layer",
-    "radius", "gap",
+    "name",
+    "reference",
+    "values",
+    "packed",
+    "rotations",
+    "slope",
+    "step",
+    "nodes",
+    "few",
+    "layer",
+    "radius",
+    "gap",
 ];
 
 impl Reader<'_> {
@@ -50,7 +60,8 @@ impl Reader<'_> {
         let turn = std::f64::consts::PI;
         let angles = [layer, radius, gap].into_iter().flatten().all(|angle| angle < turn);
         if !(settings.step > 0.0 && (24..=128).contains(&settings.nodes) && angles) {
-            let message = "`step` is 0, `nodes` are not 24 to 128, or an angle is half a turn or more";
+            let message =
+                "`step` is 0, `nodes` are not 24 to 128, or an angle is half a turn or more";
             let help = "correct them, or leave them out";
             self.texts.error(fields.spot, "limit/settings", message.to_owned(), help);
             return None;
@@ -68,8 +79,10 @@ impl Reader<'_> {
     }
 
     fn drivers(&mut self, fields: &Fields<'_>) -> Option<Drivers> {
-        let given: Vec<_> =
-            ["values", "packed", "rotations"].into_iter().filter(|key| fields.get(key).is_some()).collect();
+        let given: Vec<_> = ["values", "packed", "rotations"]
+            .into_iter()
+            .filter(|key| fields.get(key).is_some())
+            .collect();
         match (given[..].first().copied(), given.len()) {
             (Some("values"), 1) => {
                 let node = fields.get("values")?;
@@ -107,7 +120,11 @@ impl Reader<'_> {
                 Some(Drivers::Rotations(all))
             }
             _ => {
-                self.missing(fields, "values", "the driver at each sample: one of `values`, `packed`, `rotations`");
+                self.missing(
+                    fields,
+                    "values",
+                    "the driver at each sample: one of `values`, `packed`, `rotations`",
+                );
                 None
             }
         }

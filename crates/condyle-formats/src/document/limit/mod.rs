@@ -55,8 +55,17 @@ use condyle_model::limit::field::{Chart, snapped, unpacked};
 use std::sync::Arc;
 
 /// The tables and keys of a limit.
-pub(super) const KEYS: &[&str] =
-    &["child", "reference", "source", "population", "frames", "samples", "learning", "learned", "given"];
+pub(super) const KEYS: &[&str] = &[
+    "child",
+    "reference",
+    "source",
+    "population",
+    "frames",
+    "samples",
+    "learning",
+    "learned",
+    "given",
+];
 
 const FORM: Form = Form { kind: Kind::Limit, keys: KEYS, own: &[], repeated: &[] };
 

@@ -1,8 +1,8 @@
 //! Writes a learned limit: the samples in base64, and all numbers with which the same field is made again.
 
 use super::super::model::{number, numbers, text};
-use crate::text::base64;
 use super::given::given;
+use crate::text::base64;
 use condyle_learn::limits::LearnedLimit;
 use condyle_learn::limits::field::{Ground, Learned};
 use condyle_model::limit::field::packed;

@@ -281,7 +281,8 @@ fn depending(p: &At<'_>, samples: usize) -> Result<Dependence, Error> {
         gap: p.perhaps("layer").map(|at| at.number()).transpose()?,
     };
     if !((24..=128).contains(&settings.nodes) && settings.slope >= 0.0 && settings.step > 0.0) {
-        return Err(nodes.error("there are not 24 to 128 nodes, or slope or step are below 0", "correct them"));
+        return Err(nodes
+            .error("there are not 24 to 128 nodes, or slope or step are below 0", "correct them"));
     }
     let known = match p.perhaps("known") {
         None => None,
@@ -289,7 +290,9 @@ fn depending(p: &At<'_>, samples: usize) -> Result<Dependence, Error> {
             let (radius, gap) = (at.key("radius")?.number()?, at.key("gap")?.number()?);
             let turn = std::f64::consts::PI;
             if !(radius > 0.0 && radius < turn && (0.0..turn).contains(&gap)) {
-                return Err(at.error("these are no angles between 0 and half a turn", "correct them"));
+                return Err(
+                    at.error("these are no angles between 0 and half a turn", "correct them")
+                );
             }
             Some(DependenceKnown { radius, gap })
         }

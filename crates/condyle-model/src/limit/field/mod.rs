@@ -351,7 +351,8 @@ impl Field {
             let near = self.samples.get(sample).copied().filter(inside);
             near.or_else(|| self.samples.iter().copied().find(inside))
         };
-        let found = projection::project(&projection::Spline(&self.lattice, spline), inward, starts, anchor);
+        let found =
+            projection::project(&projection::Spline(&self.lattice, spline), inward, starts, anchor);
         let Some((mut found, sure)) = found else {
             return same(q);
         };

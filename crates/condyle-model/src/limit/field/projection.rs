@@ -141,8 +141,9 @@ pub(super) fn project(
     for start in starts.into_iter().flatten() {
         let found = match approach(surface, from, start) {
             Some(found) => Some((found, true)),
-            None => landed(surface, start, 12)
-                .map(|landed| (descended(surface, from, landed), false)),
+            None => {
+                landed(surface, start, 12).map(|landed| (descended(surface, from, landed), false))
+            }
         };
         let nearer = |p: Quat| best.is_none_or(|(q, _)| from.dot(p).abs() > from.dot(q).abs());
         best = found.filter(|(p, _)| nearer(*p)).or(best);

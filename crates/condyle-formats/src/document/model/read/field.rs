@@ -124,7 +124,8 @@ impl ModelReader<'_> {
         let wanted =
             "an `orientation`, or the `segment` whose rotation is limited and its `reference`";
         let own = ["orientation", "segment", "reference"];
-        let mut ports = vec![self.turned(draft, set, ("measured_for", name), fields, own, wanted)?];
+        let mut ports =
+            vec![self.turned(draft, set, ("measured_for", name), fields, own, wanted)?];
         let driver = ["driver_orientation", "driver_segment", "driver_reference"];
         if let Some(node) = fields.get("driver") {
             for key in driver {
@@ -135,7 +136,8 @@ impl ModelReader<'_> {
             }
             ports.push(self.text(node, "driver")?);
         } else if driver.iter().any(|key| fields.get(key).is_some()) {
-            let wanted = "a `driver_orientation`, or the `driver_segment` that the limit depends on";
+            let wanted =
+                "a `driver_orientation`, or the `driver_segment` that the limit depends on";
             let driven = ("driver_of", name);
             ports.push(self.turned(draft, set, driven, fields, driver, wanted)?);
         }

@@ -30,7 +30,8 @@ pub fn layer(
 ) -> (DependenceKnown, Vec<f64>) {
     let radius = radius(ground, dependence, BESIDE);
     // Distances to a tenth of a degree are not needed here.
-    let coarse = DependenceSettings { nodes: dependence.settings.nodes.min(NODES), ..dependence.settings };
+    let coarse =
+        DependenceSettings { nodes: dependence.settings.nodes.min(NODES), ..dependence.settings };
     let coarse = Dependence { settings: coarse, ..dependence.clone() };
     let question = Question::new(ground, &coarse, radius);
     let number = parts.iter().max().map_or(0, |last| last + 1);
@@ -70,10 +71,12 @@ pub fn layer(
 
 /// The layer with which the mean volume is what is there over 1 - `missing`.
 fn thickness(question: &Question<'_>, found: &Found, missing: f64, most: f64) -> f64 {
-    let weights = || (0..found.cells.len()).map(|cell| {
-        let known = found.cells.value(cell).is_some() && !end(&found.cells, cell);
-        f64::from(if known { found.counts.get(cell).copied().unwrap_or(0) } else { 0 })
-    });
+    let weights = || {
+        (0..found.cells.len()).map(|cell| {
+            let known = found.cells.value(cell).is_some() && !end(&found.cells, cell);
+            f64::from(if known { found.counts.get(cell).copied().unwrap_or(0) } else { 0 })
+        })
+    };
     let with = |gap: f64| -> f64 {
         match &found.bare {
             Bare::Bounds { bounds, .. } => weights()

@@ -20,8 +20,8 @@ mod slice;
 mod trend;
 
 pub use condyle_model::limit::field::dependent::{
-    Dependence, DependenceKnown, DependenceSettings, Dependent, Driver, Drivers, Given, GivenAnswer,
-    Sloped,
+    Dependence, DependenceKnown, DependenceSettings, Dependent, Driver, Drivers, Given,
+    GivenAnswer, Sloped,
 };
 pub use layer::layer;
 pub use limit::{Asked, limit};
@@ -33,8 +33,8 @@ use super::nearest::Nodes;
 use condyle_math::{Quat, Vec3};
 use condyle_model::limit::field::dependent::{Cells, Child};
 use condyle_model::limit::field::{Ground, Lattice};
-use trend::{BESIDE, Trend};
 use std::f64::consts::PI;
+use trend::{BESIDE, Trend};
 
 /// A child whose rotations are off one axis by less than this, in radians (root mean square), is a hinge: half a degree.
 const HINGE: f64 = 0.5 * PI / 180.0;
@@ -83,8 +83,7 @@ impl<'a> Question<'a> {
         let lattice = Lattice::new(dependence.settings.nodes.clamp(24, 128));
         let rotations = lattice.nodes();
         let hinge = hinge(ground);
-        let question =
-            Self { ground, dependence, radius, hinge, trend: None, lattice, rotations };
+        let question = Self { ground, dependence, radius, hinge, trend: None, lattice, rotations };
         Self { trend: Trend::new(&question), ..question }
     }
 }
@@ -121,9 +120,8 @@ fn radius(ground: &Ground, dependence: &Dependence, part: f64) -> f64 {
     let mut far: Vec<f64> = (0..count)
         .step_by(count.div_ceil(150).max(1))
         .map(|at| {
-            let mut distances: Vec<f64> = (0..count).map(|other| {
-                apart(ground, dependence, part, at, other)
-            }).collect();
+            let mut distances: Vec<f64> =
+                (0..count).map(|other| apart(ground, dependence, part, at, other)).collect();
             let place = NEIGHBOURS.min(count - 1);
             *distances.select_nth_unstable_by(place, f64::total_cmp).1
         })
@@ -142,7 +140,8 @@ fn apart(ground: &Ground, dependence: &Dependence, part: f64, one: usize, other:
         return f64::INFINITY;
     };
     let drivers = &dependence.drivers;
-    let far = drivers.get(one).zip(drivers.get(other)).map_or(f64::INFINITY, |(a, b)| a.distance(b));
+    let far =
+        drivers.get(one).zip(drivers.get(other)).map_or(f64::INFINITY, |(a, b)| a.distance(b));
     p.angle_to(*q) + part * dependence.settings.slope * far
 }
 

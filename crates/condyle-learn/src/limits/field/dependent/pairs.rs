@@ -35,8 +35,11 @@ impl Pairs {
         let mut spread = Spread::new(least);
         for (take, (given, drivers)) in (0u32..).zip(takes) {
             if given.len() != drivers.len() {
-                let message =
-                    format!("{} rotations have {} values of the driver", given.len(), drivers.len());
+                let message = format!(
+                    "{} rotations have {} values of the driver",
+                    given.len(),
+                    drivers.len()
+                );
                 return Err(Error::new("given/pairs", message));
             }
             for (index, q) in given.iter().enumerate() {
@@ -61,8 +64,9 @@ impl Pairs {
                     gathered.near += 1;
                     continue;
                 }
-                let index = u32::try_from(rotations.len())
-                    .map_err(|_| Error::new("cloud/size", "there are more than 4294967295 rotations"))?;
+                let index = u32::try_from(rotations.len()).map_err(|_| {
+                    Error::new("cloud/size", "there are more than 4294967295 rotations")
+                })?;
                 if !push(&mut kept, driver) {
                     let message = "drivers are not all of one kind";
                     return Err(Error::new("given/pairs", message));

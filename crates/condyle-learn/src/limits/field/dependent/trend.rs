@@ -7,8 +7,8 @@
 
 use super::super::super::Cloud;
 use super::super::nearest::Nodes;
-use super::{Question, Drivers, angle, cells, radius, slice};
 use super::Driver;
+use super::{Drivers, Question, angle, cells, radius, slice};
 use condyle_math::Quat;
 use condyle_model::limit::field::Lattice;
 
@@ -138,7 +138,8 @@ impl Trend {
             let field = slice::slice(&nodes, &inward, &retreats(*value), ball);
             for (q, terms) in inward.iter().zip(&mut corners) {
                 let about = lattice.corners(*q);
-                let here = about.iter().filter_map(|node| field.get(*node)).filter(|d| d.is_finite());
+                let here =
+                    about.iter().filter_map(|node| field.get(*node)).filter(|d| d.is_finite());
                 let (mut total, mut count) = (0.0, 0.0f64);
                 here.for_each(|d| (total, count) = (total + f64::from(*d), count + 1.0));
                 for (term, weight) in terms.iter_mut().zip(weights) {

@@ -207,9 +207,8 @@ impl<'a> Given<'a> {
     }
 
     fn blended_bounds(&self, bounds: &[[f64; 2]], whole: [f64; 2], driver: Driver) -> Blended<2> {
-        let of = |cell: Option<usize>| {
-            cell.and_then(|cell| bounds.get(cell)).copied().unwrap_or(whole)
-        };
+        let of =
+            |cell: Option<usize>| cell.and_then(|cell| bounds.get(cell)).copied().unwrap_or(whole);
         self.made.cells.blended(driver, of)
     }
 
