@@ -54,7 +54,7 @@ def query(limit, q, driver, head):
     return np.array([c[at] for c in cells]), np.array([float(c[at + 1]) if c[at + 1] else np.nan for c in cells])
 
 
-AROUND = np.linspace(-np.pi, np.pi, 120, endpoint=False)
+AROUND = np.linspace(-np.pi, np.pi, 180, endpoint=False)
 
 
 def learn(takes, child, reference, given, *more):
@@ -75,9 +75,9 @@ def table(title, child, reference, given, head, driver_of, people):
             took = {t: driver_of(*t) for t in train + test}
             own = np.vstack([took[t][0] for t in train])
             middle, axis = hinge(own)
-            asked = np.vstack([took[t][0] for t in test])[::5]
-            drivers = np.vstack([took[t][1] for t in test])[::5]
-            some = drivers[np.linspace(0, len(drivers) - 1, 250).astype(int)]
+            asked = np.vstack([took[t][0] for t in test])[::8]
+            drivers = np.vstack([took[t][1] for t in test])[::8]
+            some = drivers[np.linspace(0, len(drivers) - 1, 60).astype(int)]
             circle = turned(AROUND, middle, axis)
             every = np.repeat(some, len(AROUND), 0), np.tile(circle, (len(some), 1))
             limit, report = learn([path(*t) for t in train], child, reference, given)

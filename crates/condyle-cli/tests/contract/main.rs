@@ -10,6 +10,7 @@ mod convert;
 mod diff;
 mod document;
 mod fk;
+mod given;
 mod info;
 #[cfg(unix)]
 mod keypoints;

@@ -5,7 +5,7 @@ use condyle_learn::frames::{Orientated, Recipe};
 use condyle_learn::limits::dependent::{
     Asked, DependenceSettings, Driver, Drivers, Pairs, limit as dependent_limit,
 };
-use condyle_learn::limits::{Cloud, Gathered, LearnedLimit, SPACING, left_out};
+use condyle_learn::limits::{About, Cloud, Gathered, LearnedLimit, SPACING, left_out};
 use condyle_learn::rotations::{self, Pair};
 use condyle_math::Quat;
 use condyle_model::{CoordinateKind, Model};
@@ -251,8 +251,11 @@ pub fn learn_given(
         .iter()
         .copied()
         .zip(&driven)
-        .filter(|(rotations, _)| !rotations.is_empty())
-        .map(|(rotations, driven)| (rotations, driven.drivers.clone()))
+        .map(|(rotations, driven)| match (rotations.is_empty(), &first.drivers) {
+            (true, Drivers::Scalars(_)) => (rotations, Drivers::Scalars(vec![])),
+            (true, Drivers::Rotations(_)) => (rotations, Drivers::Rotations(vec![])),
+            (false, _) => (rotations, driven.drivers.clone()),
+        })
         .collect();
     let pairs = Pairs::gather(&pairs, spacing, settings.slope)?;
     let whole = super::limit::settings(how);
@@ -261,8 +264,12 @@ pub fn learn_given(
         false => left_out(&raw, spacing.max(1e-3), &whole)?.settings(&whole),
     };
     let cloud = Cloud::gather(&[&pairs.rotations], 0.0)?;
+    // Takes after the last one that gave samples have none to name.
+    let last = pairs.takes.iter().max().map_or(0, |last| *last as usize + 1);
+    let names: Vec<String> = takes.iter().take(last).map(|take| take.name.clone()).collect();
+    let source = format!("recordings {}", names.join(", "));
     let asked = Asked {
-        about: about(takes, &cloud, name),
+        about: About { source, takes: names, ..about(takes, &cloud, name) },
         name: first.name.clone(),
         reference: first.reference.clone(),
         settings: Some(settings),
