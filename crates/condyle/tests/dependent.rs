@@ -1,13 +1,13 @@
 //! Limits that depend on another joint, in models from text to answers. What is learned are hinges about z whose bounds follow a law:
 //! 120° less 0.4 of how far the upper arm is turned, and 20° and 0.4 of the elbow's flexion.
 
-use condyle::check::motion as motions;
+use condyle::check::motion;
 use condyle::formats::document::{self, limit};
 use condyle::formats::exchange;
 use condyle::learn::limits::dependent::{Asked, Driver, Drivers, Pairs, limit as learned};
 use condyle::learn::limits::{About, Settings};
 use condyle::math::{Quat, Vec3};
-use condyle::{Jacobian, Law, Mode, Model, Motion, Pose, Program};
+use condyle::{AngleUnit, Jacobian, Law, Mode, Model, Motion, Pose, Program};
 use std::sync::OnceLock;
 
 fn unit(state: &mut u64) -> f64 {
@@ -196,7 +196,7 @@ fn posing_moves_the_child_and_not_its_driver() {
         let asked = Quat::from_axis_angle(Vec3::Z, 1.6);
         let stored = posture(Quat::IDENTITY, flexion, asked);
         program.evaluate(&stored, Mode::Posed, &mut pose).unwrap();
-        let effective = pose.effective();
+        let effective = pose.effective().to_vec();
         assert_eq!(effective[..5], stored[..5]);
         let held = Quat { x: effective[5], y: effective[6], z: effective[7], w: effective[8] };
         assert!((held.log().z - turned(flexion)).abs() < 1.5f64.to_radians());
@@ -215,11 +215,14 @@ fn a_motion_is_checked_at_its_drivers() {
     let wrist = Quat::IDENTITY;
     // The same flexion is legal with the arm at rest, and 10 degrees or so too much with it turned by 40.
     let far = Quat::from_axis_angle(Vec3::X, 40f64.to_radians());
-    let motion = Motion {
+    let moved = Motion {
         times: vec![0.0, 0.1],
         frames: vec![posture(Quat::IDENTITY, bent, wrist), posture(far, bent, wrist)],
     };
-    let checked = motions::check(&model, &motion);
+    let mut table = moved.to_table(&model, "m");
+    table.angle_unit = AngleUnit::Radians;
+    table.values = moved.frames.concat();
+    let checked = motion::check(&model, &table);
     let broken = &checked.broken;
     assert_eq!(broken.len(), 1, "{broken:?}");
     assert_eq!((broken[0].frames, broken[0].frame), (1, 1));
