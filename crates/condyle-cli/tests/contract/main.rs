@@ -11,6 +11,7 @@ mod coupling;
 mod diff;
 mod document;
 mod fk;
+mod given;
 mod info;
 #[cfg(unix)]
 mod keypoints;

@@ -81,6 +81,7 @@ pub(super) fn to_json(limit: &LearnedLimit) -> Value {
         "radius_deg": learned.radius.to_degrees(),
         "gap_deg": learned.gap.to_degrees(),
         "holes": learned.holes.iter().map(hole).collect::<Vec<_>>(),
+        "given": limit.dependence().map(|given| json!({ "name": given.name, "reference": given.reference })),
     })
 }
 
@@ -127,6 +128,14 @@ pub(super) fn to_text(limit: &LearnedLimit) -> String {
         learned.holes.len(),
         100.0 * learned.outer
     );
+    if let Some(given) = limit.dependence() {
+        let within = given.reference.as_ref().map_or(String::new(), |r| format!(" in {r}"));
+        let _ = writeln!(
+            out,
+            "  depends on {}{within}: boundaries move by at most {} per unit of it",
+            given.name, given.settings.slope
+        );
+    }
     for (axis, [least, most]) in ["x", "y", "z"].into_iter().zip(extent(limit)) {
         let _ = writeln!(
             out,

@@ -1,6 +1,7 @@
 //! `condyle limits report`: the mobility of a joint, and two compared.
 
 use super::Outcome;
+use crate::commands::learn::{bins_json, bins_text};
 use crate::failure::{Failure, warned};
 use crate::output;
 use clap::{Args, ValueEnum};
@@ -86,7 +87,8 @@ impl Report {
         if self.json {
             output::print_json(&json(&limit, other.as_deref(), &numbers, versus.as_ref()))?;
         } else {
-            let text = self.text(&limit, &numbers, versus.as_ref());
+            let mut text = self.text(&limit, &numbers, versus.as_ref());
+            text.push_str(&bins_text(&limit));
             output::print(text.as_bytes())?;
         }
         Ok(Outcome::Done)
@@ -292,6 +294,7 @@ fn json(
         "systems": numbers.systems.iter().map(system).collect::<Vec<_>>(),
         "thin_from_deg": numbers.thin_from.to_degrees(),
         "regions": regions,
+        "given": bins_json(limit),
         "compared": versus.zip(other).map(|(versus, other)| compared(versus, other)),
     })
 }

@@ -21,6 +21,12 @@
 //! spacing, radius, gap        = what was found: with these and `axes` the field is made again as it was
 //! extreme, surface, outer, valid, holes
 //! [shape]      = instead of all these: formulas, see `shape.rs`
+//! [given]      = where the limit depends on another joint
+//! name, reference             = the coordinate, or the segment whose rotation it is and the one in which it is seen
+//! values       = the driver at each sample, radians or metres: base64 of an f32 each, little endian, or a list
+//! packed       = of a rotation as of the samples; or a list `rotations`
+//! slope, step, nodes, few, layer = how it is learned (condyle_model::limit::field::dependent::DependenceSettings)
+//! radius, gap  = what was found
 //! ```
 //!
 //! A rotation is a unit quaternion x, y, z, w of the child's axes in the reference's; q and -q are one rotation. Whatever
@@ -29,6 +35,7 @@
 //! The field is no part of the file: it is made when it is first asked for, and answers as the one that was
 //! learned.
 
+mod given;
 mod shape;
 mod spheres;
 mod write;
@@ -59,6 +66,7 @@ pub(super) const KEYS: &[&str] = &[
     "samples",
     "learning",
     "learned",
+    "given",
     "shape",
 ];
 
@@ -171,6 +179,10 @@ impl Reader<'_> {
         let keys = ["packed", "rotations", "takes", "names", "thinned", "axes"];
         let samples = self.table_of(top, "samples", &keys)?;
         let Samples { rotations, takes, names, thinned, chart } = self.samples(&samples)?;
+        let given = match top.get("given") {
+            Some(_) => Some(self.given(top, rotations.len())?),
+            None => None,
+        };
         let (known, learned) = learned.unzip();
         let about = About { takes: names, ..about? };
         let settings = settings?;
@@ -183,10 +195,19 @@ impl Reader<'_> {
             None => {
                 let cloud = Cloud::gather(&[&rotations], 0.0).ok()?;
                 let ground = field::ground(&cloud, &settings).ok()?;
+                // Each sample has its driver: then none is left out.
+                let ground = match given {
+                    Some(_) => Ground { samples: rotations, ..ground },
+                    None => ground,
+                };
                 Ground { thinned, takes: vec![ground.samples.len() as u32], ..ground }
             }
         };
-        Some(LearnedLimit::new(about, Arc::new(ground), learned.flatten(), field::made))
+        let limit = LearnedLimit::new(about, Arc::new(ground), learned.flatten(), field::made);
+        Some(match given {
+            Some(given) => limit.depending_on(given, field::dependent::made),
+            None => limit,
+        })
     }
 
     /// A table below another, if it is there.

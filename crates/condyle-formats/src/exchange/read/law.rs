@@ -3,6 +3,9 @@
 use super::value::At;
 use crate::Error;
 use crate::exchange::AXES;
+use condyle_learn::limits::dependent::{
+    self, Dependence, DependenceKnown, DependenceSettings, Drivers,
+};
 use condyle_learn::limits::field::made;
 use condyle_math::{EulerOrder, Quat, Vec3};
 use condyle_model::Law;
@@ -260,13 +263,69 @@ fn field(p: &At<'_>) -> Result<Law, Error> {
         Some(at) => Reflection::new(axis(&at)?),
         None => None,
     };
+    let count = ground.samples.len();
+    let limit = LearnedLimit::new(about, Arc::new(ground), None, made);
+    let limit = match p.perhaps("given") {
+        Some(at) => limit.depending_on(depending(&at, count)?, dependent::made),
+        None => limit,
+    };
+    let axes = |key: &str| p.perhaps(key).map_or(Ok(Quat::IDENTITY), |at| quaternion(&at));
     Ok(Law::Field(FieldLimit {
-        limit: Arc::new(LearnedLimit::new(about, Arc::new(ground), None, made)),
+        limit: Arc::new(limit),
+        driver_in_reference: axes("driver_in_reference")?,
+        driver_in_segment: axes("driver_in_segment")?,
         in_reference: quaternion(&p.key("in_reference")?)?,
         in_segment: quaternion(&p.key("in_segment")?)?,
         mirrored,
         strict: p.key("strict")?.flag()?,
     }))
+}
+
+/// What a limit with so many samples depends on.
+fn depending(p: &At<'_>, samples: usize) -> Result<Dependence, Error> {
+    let drivers = match (p.perhaps("values"), p.perhaps("rotations")) {
+        (Some(at), None) => {
+            let values = at.list()?.iter().map(At::number).collect::<Result<Vec<_>, Error>>()?;
+            Drivers::Scalars(values)
+        }
+        (None, Some(at)) => {
+            let one = |q: &At<'_>| Ok(snapped(Quat::from(q.some::<4>()?)));
+            Drivers::Rotations(at.list()?.iter().map(one).collect::<Result<Vec<_>, Error>>()?)
+        }
+        _ => return Err(p.error("it has no driver", "give one of `values` and `rotations`")),
+    };
+    if drivers.len() != samples {
+        let message = format!("{} values of the driver for {samples} samples", drivers.len());
+        return Err(p.error(message, "give the driver at each sample"));
+    }
+    let nodes = p.key("nodes")?;
+    let settings = DependenceSettings {
+        slope: p.key("slope")?.number()?,
+        step: p.key("step")?.number()?,
+        nodes: nodes.count()? as usize,
+        few: p.key("few")?.count()?,
+        gap: p.perhaps("layer").map(|at| at.number()).transpose()?,
+    };
+    if !((24..=128).contains(&settings.nodes) && settings.slope >= 0.0 && settings.step > 0.0) {
+        return Err(nodes
+            .error("there are not 24 to 128 nodes, or slope or step are below 0", "correct them"));
+    }
+    let known = match p.perhaps("known") {
+        None => None,
+        Some(at) => {
+            let (radius, gap) = (at.key("radius")?.number()?, at.key("gap")?.number()?);
+            let turn = std::f64::consts::PI;
+            if !(radius > 0.0 && radius < turn && (0.0..turn).contains(&gap)) {
+                return Err(
+                    at.error("these are no angles between 0 and half a turn", "correct them")
+                );
+            }
+            Some(DependenceKnown { radius, gap })
+        }
+    };
+    let reference = p.perhaps("reference").map(|at| at.text().map(str::to_owned)).transpose()?;
+    let name = p.key("name")?.text()?.to_owned();
+    Ok(Dependence { name, reference, drivers, settings, known })
 }
 
 fn contact(p: &At<'_>, inputs: &At<'_>) -> Result<Law, Error> {

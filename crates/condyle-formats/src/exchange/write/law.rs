@@ -11,6 +11,9 @@ use condyle_model::component::{
     Place, Product, Region, RelativeOrientation, RelativePosition, Rotate, Scale, Shear,
     SurfaceAxis, Swinging, Translate,
 };
+use condyle_model::limit::field::dependent::{
+    Dependence, DependenceKnown, DependenceSettings, Drivers,
+};
 use condyle_model::limit::field::{About, Ends, Ground, Known, Settings, Shape};
 use condyle_model::limit::{ConePoint, Projection};
 use serde_json::{Value, json};
@@ -142,7 +145,42 @@ fn cone(JointCone { of, cone }: &JointCone) -> Value {
 }
 
 /// A learned limit: axes, and all that it was learned from.
-fn field(FieldLimit { limit, in_reference, in_segment, mirrored, strict }: &FieldLimit) -> Value {
+/// What a limit depends on.
+fn given(dependence: &Dependence) -> Value {
+    let Dependence { name, reference, drivers, settings, known } = dependence;
+    let DependenceSettings { slope, step, nodes, few, gap } = settings;
+    let (values, rotations) = match drivers {
+        Drivers::Scalars(values) => (Some(json!(values)), None),
+        Drivers::Rotations(all) => {
+            (None, Some(all.iter().map(|q| json!(q.to_array())).collect::<Value>()))
+        }
+    };
+    let known =
+        known.map(|DependenceKnown { radius, gap }| json!({ "radius": radius, "gap": gap }));
+    json!({
+        "name": name,
+        "reference": reference,
+        "values": values,
+        "rotations": rotations,
+        "slope": slope,
+        "step": step,
+        "nodes": nodes,
+        "few": few,
+        "layer": gap,
+        "known": known,
+    })
+}
+
+fn field(law: &FieldLimit) -> Value {
+    let FieldLimit {
+        limit,
+        in_reference,
+        in_segment,
+        driver_in_reference,
+        driver_in_segment,
+        mirrored,
+        strict,
+    } = law;
     let About { name, child, reference, source, population, frames, takes: names } = limit.about();
     let Ground { samples, takes, thinned, chart, settings, known, shape } = &**limit.ground();
     let Settings { nodes, radius, gap, hole } = settings;
@@ -150,7 +188,7 @@ fn field(FieldLimit { limit, in_reference, in_segment, mirrored, strict }: &Fiel
         |Known { spacing, radius, gap }| json!({ "spacing": spacing, "radius": radius, "gap": gap }),
     );
     let rotations: Value = samples.iter().map(|q| json!(q.to_array())).collect();
-    let mut law = json!({
+    let mut written = json!({
         "in_reference": in_reference.to_array(),
         "in_segment": in_segment.to_array(),
         "mirrored": mirrored.map(|at| AXES[at.axis() % 3]),
@@ -172,10 +210,18 @@ fn field(FieldLimit { limit, in_reference, in_segment, mirrored, strict }: &Fiel
         "known": known,
         "rotations": rotations,
     });
-    if let (Some(shape), Some(object)) = (shape, law.as_object_mut()) {
-        object.insert("shape".to_owned(), shape_of(shape));
+    if let Some(keys) = written.as_object_mut() {
+        if let Some(shape) = shape {
+            keys.insert("shape".to_owned(), shape_of(shape));
+        }
+        // Limits that depend on nothing are written as they were before there were others.
+        if let Some(dependence) = limit.dependence() {
+            keys.insert("given".to_owned(), given(dependence));
+            keys.insert("driver_in_reference".to_owned(), json!(driver_in_reference.to_array()));
+            keys.insert("driver_in_segment".to_owned(), json!(driver_in_segment.to_array()));
+        }
     }
-    law
+    written
 }
 
 /// Three turns whose ends depend on those before.

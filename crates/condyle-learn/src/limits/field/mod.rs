@@ -12,6 +12,7 @@
 mod axes;
 mod closing;
 mod density;
+pub mod dependent;
 mod even;
 mod layer;
 mod nearest;

@@ -255,6 +255,7 @@ impl Compiler<'_> {
             }
             let held = match component.law {
                 Law::Depend(_) => component.at("passive"),
+                Law::Field(_) => component.at("orientation"),
                 _ => &component.inputs,
             };
             for (k, &source) in held.iter().enumerate() {

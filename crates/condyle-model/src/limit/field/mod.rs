@@ -22,6 +22,7 @@
 
 mod boundary;
 mod chart;
+pub mod dependent;
 mod lattice;
 mod learned;
 mod outer;
@@ -32,8 +33,9 @@ mod shape;
 
 pub use boundary::Boundary;
 pub use chart::Chart;
+pub use dependent::{Dependence, Dependent, Driver, Drivers, Given};
 pub use lattice::Lattice;
-pub use learned::{About, LearnedLimit};
+pub use learned::{About, LearnedLimit, MakeDependent};
 pub use packed::{packed, snapped, unpacked};
 pub use reach::{Fibre, fibre};
 pub use shape::{Ends, Shape, ShapeError};
@@ -364,7 +366,8 @@ impl Field {
             };
             near.or_else(|| self.samples.iter().copied().find(inside)).or_else(middle)
         };
-        let found = projection::project(&self.lattice, spline, inward, starts, anchor);
+        let found =
+            projection::project(&projection::Spline(&self.lattice, spline), inward, starts, anchor);
         let Some((mut found, sure)) = found else {
             return same(q);
         };

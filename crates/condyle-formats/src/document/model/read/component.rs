@@ -28,8 +28,20 @@ struct LawReader {
 }
 
 /// The keys of a learned limit; `segment` and `reference` stand for a component that measures them.
-const FIELD: &[&str] =
-    &["segment", "reference", "file", "limit", "in_reference", "in_segment", "mirrored", "holes"];
+const FIELD: &[&str] = &[
+    "segment",
+    "reference",
+    "driver_segment",
+    "driver_reference",
+    "file",
+    "limit",
+    "in_reference",
+    "in_segment",
+    "driver_in_reference",
+    "driver_in_segment",
+    "mirrored",
+    "holes",
+];
 
 const READERS: &[LawReader] = &[
     reader("map", &["function", "functions", "in", "out"], |r, f| r.map(f)),

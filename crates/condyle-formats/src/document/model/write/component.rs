@@ -129,8 +129,12 @@ impl Writer<'_> {
 
     /// A learned limit with all that it was learned from.
     fn field(&mut self, component: &Component, field: &FieldLimit) {
-        for (key, axes) in [("in_reference", field.in_reference), ("in_segment", field.in_segment)]
-        {
+        for (key, axes) in [
+            ("in_reference", field.in_reference),
+            ("in_segment", field.in_segment),
+            ("driver_in_reference", field.driver_in_reference),
+            ("driver_in_segment", field.driver_in_segment),
+        ] {
             if axes != Quat::IDENTITY {
                 line!(self, "{key} = {}", numbers(&axes.to_array()));
             }
