@@ -91,13 +91,9 @@ fn ahead(scene: &Scene) -> Quat {
         UpAxis::Y => Quat::IDENTITY,
         UpAxis::Z => Quat::from([-half, 0.0, 0.0, half]),
     };
-    let front = upright.to_mat3() * scene.facing.direction();
-    let yaw = match front.y.abs() < 0.5 {
-        true => -front.x.atan2(front.z),
-        // One that looks along its own vertical tells nothing.
-        false => 0.0,
-    };
-    Quat::from_axis_angle(Vec3::Y, yaw) * upright
+    // With z up a facing is that of the world with y up, turned by that quarter: here it is turned back.
+    let front = scene.facing.direction();
+    Quat::from_axis_angle(Vec3::Y, -front.x.atan2(front.z)) * upright
 }
 
 /// Validates a scene before anything is built.
