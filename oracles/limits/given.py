@@ -6,7 +6,7 @@ CONDYLE is the command, FOLDER holds shoulder/cmu01 and shoulder/cmu02. Needs nu
 the turn of the forearm (the wrist's own bone in these skeletons) given the elbow. Both are hinges: "share" is that of a full turn, in the
 mean over the drivers of the held-out frames.
 """
-import json, sys, tempfile
+import functools, json, sys, tempfile
 import numpy as np
 
 sys.argv = [*sys.argv[:3], "nothing"]
@@ -75,9 +75,9 @@ def table(title, child, reference, given, head, driver_of, people):
             took = {t: driver_of(*t) for t in train + test}
             own = np.vstack([took[t][0] for t in train])
             middle, axis = hinge(own)
-            asked = np.vstack([took[t][0] for t in test])[::8]
-            drivers = np.vstack([took[t][1] for t in test])[::8]
-            some = drivers[np.linspace(0, len(drivers) - 1, 60).astype(int)]
+            asked = np.vstack([took[t][0] for t in test])[::20]
+            drivers = np.vstack([took[t][1] for t in test])[::20]
+            some = drivers[np.linspace(0, len(drivers) - 1, 30).astype(int)]
             circle = turned(AROUND, middle, axis)
             every = np.repeat(some, len(AROUND), 0), np.tile(circle, (len(some), 1))
             limit, report = learn([path(*t) for t in train], child, reference, given)
@@ -108,10 +108,12 @@ PEOPLE = [
 ]
 
 
+@functools.cache
 def elbow(person, name):
     return poses(person, name, [("rradius", "rhumerus"), ("rhumerus", "thorax")])
 
 
+@functools.cache
 def forearm(person, name):
     turn, bent = poses(person, name, [("rwrist", "rradius"), ("rradius", "rhumerus")])
     rows = [line.split() for line in open(path(person, name)) if line.startswith("rradius ")]

@@ -1,5 +1,5 @@
 //! A learned limit that depends on another joint: the elbow on the shoulder, the forearm on the elbow (Herda, Urtasun & Fua
-//! 2005 divide the parent's rotations into voxels for that; decision 21).
+//! 2005 divide the parent's rotations into voxels for that; decision 22).
 //!
 //! ```text
 //! cells        values of the driver at which a limit is known, and their weights between
