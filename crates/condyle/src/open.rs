@@ -13,7 +13,7 @@ use crate::tracking::Request;
 use condyle_diagnostics::did_you_mean;
 use condyle_diagnostics::{Diagnostic, Error, Read, nearest};
 #[cfg(feature = "document")]
-use condyle_formats::document::{self, goals::GoalList, names::NameTable};
+use condyle_formats::document::{self, goals::GoalList, law::LawDocument, names::NameTable};
 #[cfg(feature = "glb")]
 use condyle_formats::glb;
 #[cfg(feature = "opensim")]
@@ -720,6 +720,18 @@ pub fn goals(path: &Path) -> Result<Read<GoalList>, OpenError> {
 pub fn limit(path: &Path) -> Result<Read<LearnedLimit>, OpenError> {
     only(path, ContentKind::Limit, Zeros::Told, |content| match content {
         Content::Limit(limit) => Some(*limit),
+        _ => None,
+    })
+}
+
+/// Opens laws of coordinates.
+///
+/// # Errors
+/// As [`content`].
+#[cfg(feature = "document")]
+pub fn law(path: &Path) -> Result<Read<LawDocument>, OpenError> {
+    only(path, ContentKind::Law, Zeros::Told, |content| match content {
+        Content::Law(law) => Some(*law),
         _ => None,
     })
 }

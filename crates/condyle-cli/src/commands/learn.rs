@@ -1,4 +1,6 @@
-//! `condyle learn`: models from recordings; so far limits of joints.
+//! `condyle learn`: models from recordings: limits of joints, and laws that couple coordinates.
+
+mod coupling;
 
 use super::{Angles, Outcome, ZerosArgument, zeros};
 use crate::failure::{Failure, warn_about, warned};
@@ -24,6 +26,8 @@ pub(crate) struct Learn {
 enum What {
     /// Learn which rotations of a joint are possible, from recordings of people.
     Limits(Box<Limits>),
+    /// Learn how coordinates follow others, from trials.
+    Coupling(Box<coupling::Coupling>),
 }
 
 /// How a limit is learned.
@@ -97,6 +101,7 @@ impl Learn {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
         match self.what {
             What::Limits(limits) => limits.run(),
+            What::Coupling(coupling) => coupling.run(),
         }
     }
 }

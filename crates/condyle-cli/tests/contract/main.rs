@@ -7,6 +7,7 @@ mod batch;
 mod bench;
 mod constrain;
 mod convert;
+mod coupling;
 mod diff;
 mod document;
 mod fk;

@@ -8,9 +8,9 @@ use condyle_math::{EulerOrder, Quat, Vec3};
 use condyle_model::Law;
 use condyle_model::component::{
     Along, AngleNames, Angles, Ball, Centre, Combine, Compensate, ConstantCurvature, Contact,
-    ContactPair, Curve, Depend, Ellipse, Ellipsoid, FieldLimit, Gliding, HalfSpace, Heading,
-    JointCone, Map, Parameters, Pivot, Place, Product, Reflection, Registry, RelativeOrientation,
-    RelativePosition, Rotate, Scale, Shear, SurfaceAxis, Swinging, Translate,
+    ContactPair, Correlate, Curve, Depend, Ellipse, Ellipsoid, FieldLimit, Gliding, HalfSpace,
+    Heading, JointCone, Map, Parameters, Pivot, Place, Product, Reflection, Region, Registry,
+    RelativeOrientation, RelativePosition, Rotate, Scale, Shear, SurfaceAxis, Swinging, Translate,
 };
 use condyle_model::limit::field::{About, Chart, Ground, Known, LearnedLimit, Settings, snapped};
 use condyle_model::limit::{Cone, ConePoint, Projection};
@@ -28,6 +28,10 @@ pub(super) fn law(at: &At<'_>, laws: &Registry) -> Result<Law, Error> {
             })
         }
         "combine" => Law::Combine(Combine { function: p.key("function")?.function_of_several()? }),
+        "correlate" => Law::Correlate(Correlate {
+            function: p.key("function")?.function_of_several()?,
+            region: p.perhaps("region").map(|region| region_of(&region)).transpose()?,
+        }),
         "depend" => {
             let [lower, upper] = sides;
             Law::Depend(Depend { lower: lower?, upper: upper? })
@@ -278,4 +282,15 @@ fn pivot(p: &At<'_>) -> Result<Law, Error> {
     };
     let pivot = Pivot::new(p.key("axis")?.vector()?, centre);
     Ok(Law::Pivot(pivot.map_err(|error| p.error(error, "correct it"))?))
+}
+
+/// Whether it fits the function is checked when the model is built.
+fn region_of(p: &At<'_>) -> Result<Region, Error> {
+    Ok(Region {
+        low: p.key("low")?.numbers()?,
+        high: p.key("high")?.numbers()?,
+        centre: p.key("centre")?.numbers()?,
+        inverse: p.key("inverse")?.numbers()?,
+        distance: p.key("distance")?.number()?,
+    })
 }

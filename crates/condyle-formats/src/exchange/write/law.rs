@@ -7,9 +7,9 @@ use condyle_math::function::SimmSpline;
 use condyle_model::Law;
 use condyle_model::component::{
     Along, AngleNames, Angles, Ball, Centre, Combine, Compensate, ConstantCurvature, Contact,
-    ContactPair, Curve, Depend, Ellipsoid, FieldLimit, Gliding, Heading, JointCone, Map, Place,
-    Product, RelativeOrientation, RelativePosition, Rotate, Scale, Shear, SurfaceAxis, Swinging,
-    Translate,
+    ContactPair, Correlate, Curve, Depend, Ellipsoid, FieldLimit, Gliding, Heading, JointCone, Map,
+    Place, Product, Region, RelativeOrientation, RelativePosition, Rotate, Scale, Shear,
+    SurfaceAxis, Swinging, Translate,
 };
 use condyle_model::limit::field::{About, Ground, Known, Settings};
 use condyle_model::limit::{ConePoint, Projection};
@@ -22,6 +22,19 @@ pub(super) fn parameters(law: &Law) -> Value {
             json!({ "functions": functions.iter().map(function).collect::<Value>() })
         }
         Law::Combine(Combine { function }) => json!({ "function": function_of_several(function) }),
+        Law::Correlate(Correlate { function, region }) => {
+            let region = region.as_ref().map(|region| {
+                let Region { low, high, centre, inverse, distance } = region;
+                json!({
+                    "low": low,
+                    "high": high,
+                    "centre": centre,
+                    "inverse": inverse,
+                    "distance": distance,
+                })
+            });
+            json!({ "function": function_of_several(function), "region": region })
+        }
         Law::Depend(Depend { lower, upper }) => {
             json!({ "lower": lower.as_ref().map(function), "upper": upper.as_ref().map(function) })
         }

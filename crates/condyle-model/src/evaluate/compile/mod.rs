@@ -7,7 +7,7 @@ use super::behind::{Behind, Between};
 use super::derivative_plan::{DerivativePlan, plan};
 use super::instruction::{Code, Frame, Number};
 use super::program::Program;
-use crate::component::{Law, PortType, Signal};
+use crate::component::{Combine, Correlate, Law, PortType, Signal};
 use crate::model::{
     ComponentId, CoordinateId, CoordinateKind, Model, Node, SegmentId, dependency_order, measured,
 };
@@ -314,7 +314,7 @@ impl Compiler<'_> {
                         found.push((Signal::Output(id, k as u32), (coordinate, steps)));
                     }
                 }
-                Law::Combine(combine) => {
+                Law::Combine(Combine { function }) | Law::Correlate(Correlate { function, .. }) => {
                     let coordinate = |signal: &Signal| match route(*signal)? {
                         (id, steps) if steps.is_empty() => Some(id),
                         _ => None,
@@ -332,7 +332,7 @@ impl Compiler<'_> {
                         (_, [at]) => **at,
                         _ => continue,
                     };
-                    let (own, function) = (coordinates[at], combine.function.clone());
+                    let (own, function) = (coordinates[at], function.clone());
                     let step = Between::Several { function, coordinates, at };
                     found.push((Signal::Output(id, 0), (own, vec![step])));
                 }

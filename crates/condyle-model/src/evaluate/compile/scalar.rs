@@ -140,6 +140,12 @@ impl Compiler<'_> {
                 let result = self.combine(&combine.function, &inputs);
                 self.outputs[id.index()].push(result);
             }
+            Scalars::Correlate(law) => {
+                let inputs: Vec<Operand> =
+                    component.inputs.iter().map(|&s| self.scalar(s)).collect();
+                let result = self.combine(&law.function, &inputs);
+                self.outputs[id.index()].push(result);
+            }
             Scalars::Depend(depend) => {
                 let result = self.depend(id, depend, component.inputs[0], component.inputs[1]);
                 self.outputs[id.index()].push(result);

@@ -12,8 +12,8 @@ use condyle_diagnostics::did_you_mean;
 use condyle_math::function::Function;
 use condyle_model::Law;
 use condyle_model::component::{
-    Arity, Ball, Combine, Compensate, Depend, Kind, Map, Pivot, PivotError, Place, PortType,
-    Product, RelativeOrientation, Rotate, Translate,
+    Arity, Ball, Combine, Compensate, Correlate, Depend, Kind, Map, Pivot, PivotError, Place,
+    PortType, Product, RelativeOrientation, Rotate, Translate,
 };
 
 /// The help where a direction is missing.
@@ -36,6 +36,15 @@ const READERS: &[LawReader] = &[
     reader("combine", &["function"], |r, f| {
         let node = r.required(f, "function", "{ slopes = [...], intercept = 0 }")?;
         Some(Law::Combine(Combine { function: r.several(node, "function")? }))
+    }),
+    reader("correlate", &["function", "region"], |r, f| {
+        let node = r.required(f, "function", "{ slopes = [...], intercept = 0 }")?;
+        let function = r.several(node, "function")?;
+        let region = match f.get("region") {
+            Some(node) => Some(r.region(node, "region", function.arity())?),
+            None => None,
+        };
+        Some(Law::Correlate(Correlate { function, region }))
     }),
     reader("depend", &["lower", "upper", "in", "out"], |r, f| r.depend(f)),
     reader(
