@@ -68,7 +68,7 @@ impl Screw {
         let (values, vectors) = eigen::symmetric(&gram, 3);
         let best = (0..3).max_by(|i, j| values[*i].total_cmp(&values[*j]))?;
         let second = (0..3).filter(|k| *k != best).map(|k| values[k]).fold(0.0, f64::max);
-        if !(values[best] - second > 1e-6 * values[best]) {
+        if values[best].is_nan() || values[best] - second <= 1e-6 * values[best] {
             return None;
         }
         let mut b = Vec3::from([0, 1, 2].map(|row: usize| vectors[row * 3 + best])).normalized();
