@@ -331,8 +331,8 @@ fn a_limit_is_told_to_engines() {
     let folder = Folder::new("limits-engine");
     folder.write("cloud.csv", csv(&ball(3000)));
     folder.condyle(&["learn", "limits", "cloud.csv", "-o", "L.toml"]).expect(0);
-    let json =
-        folder.condyle(&["limits", "engine", "L.toml", "--json", "--directions", "8"]).json();
+    let run = ["limits", "engine", "L.toml", "--json", "--directions", "8", "-o", "T.csv"];
+    let json = folder.condyle(&run).json();
     let engines = json["engines"].as_array().expect("engines");
     let of = |law: &str| engines.iter().find(|e| e["law"] == law).expect("the law");
     let joint = &of("mujoco ball")["settings"]["joint"][0];
