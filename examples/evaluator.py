@@ -390,7 +390,7 @@ class Model:
             p["_path"] = [Spline(s) for s in path or []]
             p["_functions"] = [f and function(f) for f in p.get("functions", [p.get("lower"), p.get("upper")])]
             p["_cone"] = c["kind"] == "cone" and Cone(p)
-            p["_several"] = c["kind"] == "combine" and function_of_several(p["function"])
+            p["_several"] = c["kind"] in ("combine", "correlate") and function_of_several(p["function"])
         self.find_measured(), self.find_written_back()
     def values(self, c):
         """The signals at the ports of a component that are no segments, what is limited first."""
@@ -493,6 +493,7 @@ class Model:
     # Numbers; limits give what is asked, and the function that makes it legal.
     def map(self, p, i, c): return [f(self.read(i["input"])) for f in p["_functions"]]
     def combine(self, p, i, c): return p["_several"](self.read(i["inputs"]))
+    correlate = combine
     def depend(self, p, i, c):
         (low, high), driver = p["_functions"], self.read(i["driver"])
         def legal(asked):

@@ -151,16 +151,15 @@ impl<'m> Reach<'m> {
                             .functions
                             .get(output as usize)
                             .map_or(f64::NAN, |f| f.value_and_slope(input(0)).0),
-                        Law::Combine(combine) => {
-                            combine.function.apply_to(component.inputs.iter().map(|&s| of(s)))
-                        }
                         // In open mode a limit passes what it bounds: each of these is taken.
                         Law::Cone(_) => component
                             .at("angles")
                             .get(output as usize)
                             .map_or(f64::NAN, |&angle| of(angle)),
                         law if law.bounds() => input(output as usize),
-                        _ => f64::NAN,
+                        law => law.several().map_or(f64::NAN, |function| {
+                            function.apply_to(component.inputs.iter().map(|&s| of(s)))
+                        }),
                     }
                 }
                 Signal::Segment(_) => f64::NAN,

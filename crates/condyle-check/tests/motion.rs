@@ -2,8 +2,9 @@
 
 use condyle_check::motion::{MotionCheck, check};
 use condyle_diagnostics::{Diagnostic, Severity};
-use condyle_math::function::Function;
+use condyle_math::function::{Function, FunctionOfSeveral};
 use condyle_math::{Quat, Vec3};
+use condyle_model::component::{Correlate, Law, Region};
 use condyle_model::model::{Closure, Condition};
 use condyle_model::{CoordinateKind, Model, ModelBuilder, Range};
 use condyle_motion::{AngleUnit, Table};
@@ -281,4 +282,41 @@ fn angles_that_are_renamed_are_no_jump() {
     let jumped = check(&model, &motion(&columns, &[&[0.0, 5.0, 0.0], &[100.0, 5.0, 0.0]]));
     assert_eq!(codes(&jumped), [(Severity::Warning, "motion/jump")]);
     near(jumped.jumps[0].turned, 100f64.to_radians());
+}
+
+/// A law that was learned for flexion from 0 to 90 degrees and rotation near a tenth of it.
+#[test]
+fn a_law_outside_its_region_is_told_by_frame() {
+    let mut b = ModelBuilder::new("knee");
+    let shank = b.segment("shank", None);
+    let (set, flexion) = b.hinge("knee", shank, "flexion", Vec3::Z);
+    let rotation = b.coordinate(set, "rotation", CoordinateKind::Rotation);
+    let tx = b.coordinate(set, "tx", CoordinateKind::Translation);
+    let high = [90f64.to_radians(), 9f64.to_radians()];
+    // Across the line of rotation = flexion/10 the spread is small: 1 degree is 1, along it 30 degrees are.
+    let (along, across) = (30f64.to_radians(), 1f64.to_radians());
+    let (a, c) = (1.0 / (along * along), 1.0 / (across * across));
+    let region = Region {
+        low: vec![0.0, 0.0],
+        high: high.to_vec(),
+        centre: high.map(|h| 0.5 * h).to_vec(),
+        inverse: vec![a + 0.01 * c, -0.1 * c, -0.1 * c, c],
+        distance: 2.0,
+    };
+    let function = FunctionOfSeveral::Linear { slopes: vec![0.01, 0.0], intercept: 0.0 };
+    let law = Law::Correlate(Correlate { function, region: Some(region) });
+    let law = b.component(set, "tx_law", law, vec![flexion.into(), rotation.into()]);
+    b.follow(tx, law);
+    let model = model(b);
+    let columns = ["flexion", "rotation"];
+    let frames: [&[f64]; 5] =
+        [&[45.0, 4.5], &[100.0, 9.0], &[101.0, 9.0], &[10.0, 8.0], &[30.0, 3.5]];
+    let check = check(&model, &motion(&columns, &frames));
+    let found = &check.extrapolated[0];
+    assert_eq!((found.frames, &found.runs[..]), (3, &[[1, 3]][..]));
+    // (7 across, 35/30 along) by the formula of the ellipsoid: √(49 + 1.36)/2.
+    assert_eq!(found.frame, 3);
+    near(found.distance, (49.0 + (35.0f64 / 30.0).powi(2)).sqrt() / 2.0);
+    assert_eq!((found.beyond, check.frames), (None, 5));
+    assert_eq!(codes(&check)[0], (Severity::Warning, "motion/beyond-learned"));
 }

@@ -4,7 +4,9 @@
 //! documentation.
 
 #[cfg(feature = "document")]
-use crate::document::{self, Document, Kind, goals::GoalList, names::NameTable, setup::TrackSetup};
+use crate::document::{
+    self, Document, Kind, goals::GoalList, law::LawDocument, names::NameTable, setup::TrackSetup,
+};
 #[cfg(feature = "glb")]
 use crate::glb;
 #[cfg(feature = "opensim")]
@@ -49,6 +51,8 @@ pub enum ContentKind {
     Recipe,
     /// Which rotations of a segment in another are possible.
     Limit,
+    /// How coordinates follow others.
+    Law,
     /// A scene for viewers.
     Scene,
 }
@@ -67,6 +71,7 @@ impl ContentKind {
             Self::Goals => "goals of a pose",
             Self::Recipe => "a recipe",
             Self::Limit => "a learned limit",
+            Self::Law => "a law of coordinates",
             Self::Scene => "a scene",
         }
     }
@@ -110,6 +115,9 @@ pub enum Content {
     /// The same by the method of Herda et al. 2003.
     #[cfg(feature = "document")]
     Spheres(Box<LearnedSpheres>),
+    /// How coordinates follow others.
+    #[cfg(feature = "document")]
+    Law(Box<LawDocument>),
     /// A setup of inverse kinematics.
     #[cfg(feature = "opensim")]
     Setup(setup::IkSetup),
@@ -149,6 +157,8 @@ impl Content {
             Self::Recipe(_) => ContentKind::Recipe,
             #[cfg(feature = "document")]
             Self::Limit(_) | Self::Spheres(_) => ContentKind::Limit,
+            #[cfg(feature = "document")]
+            Self::Law(_) => ContentKind::Law,
             #[cfg(feature = "opensim")]
             Self::Setup(_) | Self::Tasks(_) => ContentKind::Setup,
         }
@@ -239,8 +249,9 @@ pub const FORMATS: &[Format] = &[
             ContentKind::Goals,
             ContentKind::Recipe,
             ContentKind::Limit,
+            ContentKind::Law,
         ],
-        writes: &[ContentKind::Model, ContentKind::Limit],
+        writes: &[ContentKind::Model, ContentKind::Limit, ContentKind::Law],
         sniff: |bytes| document::kind(bytes).is_some(),
         read: |bytes, include| {
             let text = utf8(bytes)?;
@@ -255,6 +266,9 @@ pub const FORMATS: &[Format] = &[
                 }
                 Some(Kind::Limit) => document::limit::read(text, include)?
                     .map(|limit| Content::Limit(Box::new(limit))),
+                Some(Kind::Law) => {
+                    document::law::read(text, include)?.map(|law| Content::Law(Box::new(law)))
+                }
                 // Those that are no document at all get the message of a model.
                 _ => document::read(text, include)?.map(Content::Document),
             })

@@ -20,6 +20,7 @@
 //! | CSV tables | [`csv::read`] | [`csv::write`] |
 //! | OpenSim models | [`opensim::model::read`] | [`opensim::write`] |
 //! | OpenSim inverse kinematics setups | [`opensim::setup`] | |
+//! | OpenSim scale setups, and models scaled in their own text | [`opensim::scale_setup`], [`opensim::scale`] | |
 //! | SKEL skeletons of CSE 169 | [`skel::read`] | |
 //! | ASF skeletons, and AMC takes of them | [`asf::read`], [`asf::with_skeleton`] | takes: [`asf::write`] |
 //! | BVH skeletons with motion | [`bvh::from_bytes`] | [`bvh::write`] |

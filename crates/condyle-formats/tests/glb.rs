@@ -25,8 +25,12 @@ fn arm() -> Scene {
         size: Vec3::new(0.05, 0.1, 0.02),
         turn,
     });
-    let surface =
-        |form: &Form, finish, nodes| Surface { mesh: form.mesh(), finish, nodes, weights: vec![] };
+    let surface = |form: &Form, finish, nodes| Surface {
+        mesh: form.mesh(),
+        finish,
+        nodes,
+        ..Surface::default()
+    };
     let mut hand = node("hand", Some(1));
     hand.rest.translation = [0.0, -0.3, 0.0];
     hand.bound = Affine::from_translation(down);
@@ -264,7 +268,8 @@ fn a_surface_goes_with_the_nodes_that_carry_it() {
         Form::Spindle(Spindle { from: Vec3::new(0.0, -0.2, 0.0), to: Vec3::new(0.0, -0.4, 0.0) });
     let mesh = ends.mesh();
     let weights: Vec<f64> = mesh.positions.iter().map(|p| (-0.2 - p.y) / 0.2).collect();
-    let surface = Surface { mesh, finish: Finish::Cartilage, nodes: [1, 2], weights };
+    let surface =
+        Surface { mesh, finish: Finish::Cartilage, nodes: [1, 2], weights, colours: vec![] };
     scene.surfaces = vec![surface.clone()];
     // The hand is turned at rest, and the surface is given where it is not.
     scene.nodes[2].rest = LocalPose { translation: [0.0, -0.3, 0.0], ..pose(0.8, 0.0) };
@@ -309,10 +314,12 @@ fn whoever_looks_elsewhere_is_turned_to_look_along_z() {
     use condyle_model::model::Facing;
     for up in [UpAxis::Y, UpAxis::Z] {
         for facing in [Facing::PlusX, Facing::MinusX, Facing::PlusZ, Facing::MinusZ] {
-            // Nobody looks along the vertical.
-            if up == UpAxis::Z && facing.direction().z != 0.0 {
-                continue;
-            }
+            // Nobody looks along the vertical: with z up it is y.
+            let ahead = match (up, facing) {
+                (UpAxis::Z, Facing::PlusZ) => -Vec3::Y,
+                (UpAxis::Z, Facing::MinusZ) => Vec3::Y,
+                _ => facing.direction(),
+            };
             let scene = Scene { up, facing, nodes: vec![SceneNode::default()], ..Scene::default() };
             let read = gltf::Gltf::from_slice(&write(&scene).unwrap()).unwrap();
             let top = read.scenes().next().unwrap().nodes().next().unwrap();
@@ -325,7 +332,7 @@ fn whoever_looks_elsewhere_is_turned_to_look_along_z() {
                 |a: Vec<f32>, b: [f32; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
             let vertical = if up == UpAxis::Y { Vec3::Y } else { Vec3::Z };
             assert!(near(turned(vertical), [0.0, 1.0, 0.0]), "{up:?} {facing:?}");
-            assert!(near(turned(facing.direction()), [0.0, 0.0, 1.0]), "{up:?} {facing:?}");
+            assert!(near(turned(ahead), [0.0, 0.0, 1.0]), "{up:?} {facing:?}");
         }
     }
 }
@@ -353,4 +360,39 @@ fn what_is_driven_is_a_node_whose_place_is_the_value() {
     assert_eq!(places.collect::<Vec<_>>(), [[0.0; 3], [0.5, 0.0, 0.0], [1.0, 0.0, 0.0]]);
     let wrong = Scene { driven: vec![Driven::default()], ..scene };
     assert_eq!(write(&wrong).unwrap_err().code(), "glb/track");
+}
+
+/// A surface with a colour for each corner: the numbers come back as linear light, its material is white so that nothing is mixed
+/// into them, and the same finish without colours keeps its own material.
+#[test]
+fn corners_have_colours_of_their_own() {
+    let mut scene = arm();
+    let mut coloured = scene.surfaces[0].clone();
+    let count = coloured.mesh.positions.len();
+    coloured.colours = (0..count)
+        .map(|i| [i as f32 / count as f32, 0.25, 1.0 - i as f32 / count as f32])
+        .collect();
+    scene.surfaces.push(coloured.clone());
+    let (document, bin) = reread(&scene);
+    let mesh = document.meshes().find(|mesh| mesh.name() == Some("arm")).expect("the figure");
+    let mut found = 0;
+    for primitive in mesh.primitives() {
+        let reader = primitive.reader(|_| Some(&bin));
+        let material = primitive.material().pbr_metallic_roughness().base_color_factor();
+        match reader.read_colors(0) {
+            Some(colours) => {
+                found += 1;
+                let colours: Vec<[f32; 3]> = colours.into_rgb_f32().collect();
+                assert_eq!(colours, coloured.colours);
+                assert_eq!(material, [1.0; 4]);
+            }
+            None => assert_ne!(material, [1.0; 4]),
+        }
+    }
+    assert_eq!(found, 1);
+    // A colour too few, and one that is none.
+    for wrong in [vec![[0.0; 3]], vec![[2.0; 3]; count]] {
+        scene.surfaces[3].colours = wrong;
+        assert_eq!(write(&scene).unwrap_err().code(), "glb/surface");
+    }
 }

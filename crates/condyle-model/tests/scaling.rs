@@ -35,7 +35,10 @@ fn grows_whole(model: &Model) -> bool {
         Law::Custom(_) | Law::RelativePosition(_) => false,
         Law::Translate(_) => match component.inputs[0] {
             Signal::Output(id, _) => {
-                matches!(model.components()[id.index()].law, Law::Map(_) | Law::Combine(_))
+                matches!(
+                    model.components()[id.index()].law,
+                    Law::Map(_) | Law::Combine(_) | Law::Correlate(_)
+                )
             }
             _ => false,
         },

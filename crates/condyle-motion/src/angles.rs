@@ -147,7 +147,13 @@ impl Table {
 }
 
 /// Whether a column holds no angle, by its name: a translation, part of a quaternion, a speed, or a force.
-fn is_length(name: &str) -> bool {
+///
+/// ```
+/// use condyle_motion::columns::is_length;
+/// assert!(is_length("pelvis_tx") && !is_length("knee_angle_r"));
+/// ```
+#[must_use]
+pub fn is_length(name: &str) -> bool {
     let lower = name.to_ascii_lowercase();
     let bare =
         lower.strip_suffix("/value").or_else(|| lower.strip_suffix("|value")).unwrap_or(&lower);

@@ -4,6 +4,7 @@
 //! the joint set and the coordinate (`/jointset/knee_r/knee_angle_r/value`). Parts of a path are
 //! compared whole: `left_knee/angle` does not belong to a joint set `knee`.
 
+pub use crate::angles::is_length;
 use crate::{AngleUnit, Table};
 use condyle_diagnostics::Error;
 use condyle_model::{CoordinateId, CoordinateKind, Model};

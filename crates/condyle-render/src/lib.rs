@@ -20,6 +20,7 @@
 mod band;
 mod camera;
 mod canvas;
+mod chart;
 mod ground;
 mod label;
 mod light;
@@ -30,5 +31,6 @@ pub mod shape;
 
 pub use camera::{Bounds, Camera};
 pub use canvas::{Canvas, TextSize};
+pub use chart::{Chart, Drawn, Mark, Series};
 pub use picture::{Picture, render};
 pub use scene::{Ground, Label, Line, Scene, Surface};

@@ -16,6 +16,9 @@
 //! constraint and a status. [`cholesky`] is the factorisation that it uses, [`least_squares`] the
 //! iteration around it.
 //!
+//! [`regression`] is for recordings rather than for frames: linear least squares with a report of rank, whatever the
+//! number of rows.
+//!
 //! The solution is the unique feasible point that satisfies the KKT conditions: there are
 //! multipliers `z` (bounds), `y` (equalities), `w ≥ 0` (inequalities) with
 //! `H d + g = z + Cᵀ y + Gᵀ w`, where `z_i ≥ 0` at a lower bound, `z_i ≤ 0` at an upper bound and
@@ -36,6 +39,8 @@
 
 pub mod cholesky;
 mod curvature;
+pub mod eigen;
 mod elimination;
 pub mod least_squares;
 pub mod quadratic;
+pub mod regression;

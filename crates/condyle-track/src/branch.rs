@@ -7,7 +7,8 @@
 
 use crate::target::Targets;
 use condyle_model::evaluate::ClosureRows;
-use condyle_model::{CoordinateId, CoordinateKind, Mode, Model, Pose, Program, SegmentId};
+use condyle_model::{CoordinateId, CoordinateKind, Law, Mode, Model, Pose, Program, SegmentId};
+use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A range that spans this much, 359°, has no ends where whole turns are the same posture.
@@ -253,7 +254,9 @@ fn legal(values: &[(usize, f64)], bounds: &[Option<Bounded>]) -> bool {
 /// Compares what is tracked at two lists of numbers.
 struct Comparison<'a> {
     model: &'a Model,
-    program: &'a Program,
+    program: Cow<'a, Program>,
+    /// The segments between which limits measure: where these are alike, so is what limits say, and none is asked.
+    measured: Vec<SegmentId>,
     targets: &'a Targets,
     poses: [Pose; 2],
     closures: [ClosureRows; 2],
@@ -262,9 +265,18 @@ struct Comparison<'a> {
 
 impl<'a> Comparison<'a> {
     fn new(model: &'a Model, program: &'a Program, targets: &'a Targets) -> Self {
-        let poses = [Pose::new(program), Pose::new(program)];
+        let (mut program, mut measured) = (Cow::Borrowed(program), vec![]);
+        if !program.measured_limit_rows().is_empty() {
+            let measures =
+                |law: &Law| matches!(law, Law::RelativeOrientation(_) | Law::RelativePosition(_));
+            let components = model.components().iter().filter(|c| measures(&c.law));
+            measured =
+                components.flat_map(|c| c.inputs.iter().filter_map(|i| i.segment())).collect();
+            program = Cow::Owned(Program::compile_unmeasured(model));
+        }
+        let poses = [Pose::new(&program), Pose::new(&program)];
         let closures = [ClosureRows::new(model), ClosureRows::new(model)];
-        Self { model, program, targets, poses, closures, dice: 1 }
+        Self { model, program, measured, targets, poses, closures, dice: 1 }
     }
 
     /// A number from 0 to 1: SplitMix64 (Steele, Lea & Flood 2014).
@@ -342,7 +354,7 @@ impl<'a> Comparison<'a> {
     }
 
     fn same(&mut self, a: &[f64], b: &[f64], changes: &[(usize, f64)]) -> bool {
-        let Self { model, program, targets, poses, closures, .. } = self;
+        let Self { model, program, measured, targets, poses, closures, .. } = self;
         for ((stored, pose), closures) in [a, b].iter().zip(&mut *poses).zip(&mut *closures) {
             if program.evaluate(stored, Mode::Open, pose).is_err() {
                 return false;
@@ -353,6 +365,7 @@ impl<'a> Comparison<'a> {
         let close = |x: f64, y: f64| (x - y).abs() <= SAME;
         let mut markers = targets.markers.iter().filter(|t| t.weight > 0.0);
         let segments = targets.orientations.iter().map(|t| t.segment);
+        let mut places = measured.iter();
         markers.all(|target| {
             let marker = &model.markers()[target.marker];
             let [p, q] = [p, q].map(|pose| pose.frame(marker.segment) * marker.point);
@@ -360,6 +373,11 @@ impl<'a> Comparison<'a> {
         }) && segments.into_iter().all(|segment| {
             let [p, q] = [p, q].map(|pose| pose.segment(segment).linear);
             [(p.x - q.x), (p.y - q.y), (p.z - q.z)].iter().all(|off| off.norm() <= SAME)
+        }) && places.all(|segment| {
+            let [p, q] = [p, q].map(|pose| pose.segment(*segment));
+            let off = [p.linear.x - q.linear.x, p.linear.y - q.linear.y, p.linear.z - q.linear.z];
+            off.iter().all(|off| off.norm() <= SAME)
+                && (p.translation - q.translation).norm() <= SAME
         }) && (0..program.limit_row_len()).all(|row| close(p.limit_row(row), q.limit_row(row)))
             && closures[0].residuals.iter().zip(&closures[1].residuals).all(|(x, y)| close(*x, *y))
             && p.effective().iter().zip(q.effective()).enumerate().all(|(place, (x, y))| {

@@ -106,8 +106,21 @@ pub fn scene(
 /// What the writer finds wrong.
 #[cfg(feature = "glb")]
 pub fn surface(mesh: condyle_mesh::Mesh, name: &str) -> Result<Vec<u8>, Error> {
+    coloured_surface(mesh, vec![], name)
+}
+
+/// A surface alone with a colour for each corner, red, green and blue in linear light from 0 to 1.
+///
+/// # Errors
+/// What the writer finds wrong.
+#[cfg(feature = "glb")]
+pub fn coloured_surface(
+    mesh: condyle_mesh::Mesh,
+    colours: Vec<[f32; 3]>,
+    name: &str,
+) -> Result<Vec<u8>, Error> {
     let node = glb::SceneNode { name: name.to_owned(), ..glb::SceneNode::default() };
-    let surface = glb::Surface { mesh, ..glb::Surface::default() };
+    let surface = glb::Surface { mesh, colours, ..glb::Surface::default() };
     glb::write(&glb::Scene {
         name: name.to_owned(),
         nodes: vec![node],

@@ -290,6 +290,8 @@ pub mod scaling;
 pub mod scene;
 #[cfg(feature = "formats")]
 pub mod shipped;
+#[cfg(feature = "opensim")]
+pub mod subject;
 pub mod tracking;
 
 pub use condyle_check as check;

@@ -13,11 +13,15 @@ use crate::tracking::Request;
 use condyle_diagnostics::did_you_mean;
 use condyle_diagnostics::{Diagnostic, Error, Read, nearest};
 #[cfg(feature = "document")]
-use condyle_formats::document::{self, goals::GoalList, names::NameTable};
+use condyle_formats::document::{self, goals::GoalList, law::LawDocument, names::NameTable};
 #[cfg(feature = "glb")]
 use condyle_formats::glb;
 #[cfg(feature = "opensim")]
-use condyle_formats::opensim::setup::{IkSetup, IkTasks};
+use condyle_formats::opensim::{
+    self,
+    scale_setup::ScaleSetup,
+    setup::{IkSetup, IkTasks},
+};
 #[cfg(feature = "poses")]
 use condyle_formats::poses::{Poses, Resolved};
 use condyle_formats::skeleton::Assumed;
@@ -557,6 +561,38 @@ pub fn setup(path: &Path) -> Result<Read<IkSetup>, OpenError> {
     Err(failed(path, Cause::Content { error, text: None }))
 }
 
+/// Opens a setup of OpenSim's scaling, with the sets that it keeps in files of their own.
+///
+/// # Errors
+/// [`OpenError`] where the file cannot be had, or is no such setup.
+#[cfg(feature = "opensim")]
+pub fn scale_setup(path: &Path) -> Result<Read<ScaleSetup>, OpenError> {
+    let bytes = bytes(path)?;
+    let read = opensim::scale_setup::read(&bytes, &mut |name| included(path, name));
+    read.map_err(|error| failed(path, Cause::Content { error, text: None }))
+}
+
+/// The text of a model file of OpenSim with all its sets inside, to be scaled.
+///
+/// # Errors
+/// [`OpenError`] where the file cannot be had, is no XML, or names a set that cannot be had.
+#[cfg(feature = "opensim")]
+pub fn osim_text(path: &Path) -> Result<Read<String>, OpenError> {
+    let bytes = bytes(path)?;
+    let read = opensim::scale::whole(&bytes, &mut |name| included(path, name));
+    read.map_err(|error| failed(path, Cause::Content { error, text: None }))
+}
+
+/// The text of a model file with the markers of another file put in.
+///
+/// # Errors
+/// [`OpenError`] where the file of the markers cannot be had, or its markers do not fit the model.
+#[cfg(feature = "opensim")]
+pub fn osim_with_markers(text: &str, path: &Path) -> Result<Read<String>, OpenError> {
+    let read = opensim::scale::with_marker_set(text, &bytes(path)?);
+    read.map_err(|error| failed(path, Cause::Content { error, text: None }))
+}
+
 /// What a setup of tracking asks for, of OpenSim or written by people, with the files that it names;
 /// tasks of OpenSim may stand alone.
 ///
@@ -720,6 +756,18 @@ pub fn goals(path: &Path) -> Result<Read<GoalList>, OpenError> {
 pub fn limit(path: &Path) -> Result<Read<LearnedLimit>, OpenError> {
     only(path, ContentKind::Limit, Zeros::Told, |content| match content {
         Content::Limit(limit) => Some(*limit),
+        _ => None,
+    })
+}
+
+/// Opens laws of coordinates.
+///
+/// # Errors
+/// As [`content`].
+#[cfg(feature = "document")]
+pub fn law(path: &Path) -> Result<Read<LawDocument>, OpenError> {
+    only(path, ContentKind::Law, Zeros::Told, |content| match content {
+        Content::Law(law) => Some(*law),
         _ => None,
     })
 }

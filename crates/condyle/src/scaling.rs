@@ -23,9 +23,13 @@
 //! A marker's place in the recording is its median over the frames in which it is seen. Afterwards the
 //! markers of the model are moved to where they were seen: the places of a document are those of a
 //! generic body, while a person's are those of the skin on that day.
+//!
+//! Confidences of keypoints weigh as in tracking: a frame in the median by c², a marker by the mean of c² over its
+//! frames, as half as sure means twice the σ; below 0.05 a point is not seen. Markers that weigh less than a quarter stay
+//! where the scaled model has them.
 
 use crate::matching::match_markers;
-use crate::tracking::posture;
+use crate::tracking::{LEAST_CONFIDENCE, posture};
 use condyle_diagnostics::{Diagnostic, Error, listed};
 use condyle_math::Vec3;
 use condyle_model::component::Law;
@@ -38,6 +42,10 @@ use std::fmt;
 pub const FACTORS: [f64; 2] = [0.5, 2.0];
 /// A marker whose distance from its median goes beyond this (metres) does not stand still.
 const STILL: f64 = 0.02;
+/// The same for points of an estimator of poses, which differ by some centimetres from frame to frame.
+const STILL_ESTIMATE: f64 = 0.06;
+/// A marker of less weight is not moved to where it was seen: less than half as sure as one that is sure.
+const MOVED: f64 = 0.25;
 /// A marker that is moved farther than this (metres) is worth a look.
 const FAR: f64 = 0.04;
 /// The fewest markers that a size is found from.
@@ -173,8 +181,7 @@ impl fmt::Display for ScaleError {
             n => write!(f, "and {n} can be used ({})", list(usable))?,
         }
         if !moving.is_empty() {
-            let most = 1e3 * STILL;
-            write!(f, "; these move more than {most} mm: {}", list(moving))?;
+            write!(f, "; these do not stand still: {}", list(moving))?;
         }
         f.write_str("; give a trial of a person who stands still, with more of the model's markers")
     }
@@ -292,6 +299,8 @@ struct Standing {
     markers: Vec<usize>,
     /// Where each of them was seen.
     places: Vec<Option<[f64; 3]>>,
+    /// How sure each of them is: the mean of the squares of its confidences; 1 without any.
+    sure: Vec<f64>,
 }
 
 impl Standing {
@@ -305,21 +314,28 @@ impl Standing {
         let matched = match_markers(model, &recording.labels, subject);
         let (matches, said) = matched.map_err(ScaleError::Subject)?;
         warnings.extend(said);
-        let mut standing = Self { markers: vec![], places: vec![] };
+        let mut standing = Self { markers: vec![], places: vec![], sure: vec![] };
+        let still = if recording.confidences.is_some() { STILL_ESTIMATE } else { STILL };
         let (mut usable, mut moving, mut by) = (vec![], vec![], vec![]);
         for found in matches {
             let name = &model.markers()[found.marker].name;
-            let seen = (0..recording.frames()).filter_map(|f| recording.position(f, found.label));
-            let seen: Vec<Vec3> = seen.map(Vec3::from).filter(|p| p.is_finite()).collect();
+            let weighed = |frame| {
+                let place = Vec3::from(recording.position(frame, found.label)?);
+                let sure = recording.confidence(frame, found.label);
+                (place.is_finite() && sure >= LEAST_CONFIDENCE).then_some((place, sure * sure))
+            };
+            let seen: Vec<(Vec3, f64)> = (0..recording.frames()).filter_map(weighed).collect();
             let Some(place) = median_place(&seen) else { continue };
             let strays = sway(&seen, place);
-            if strays > STILL {
+            if strays > still {
                 by.push(format!("{name} by {:.0} mm", 1e3 * strays));
                 moving.push(name.clone());
                 continue;
             }
             standing.markers.push(found.marker);
             standing.places.push(Some(place.to_array()));
+            let sum: f64 = seen.iter().map(|(_, weight)| weight).sum();
+            standing.sure.push(sum / seen.len() as f64);
             usable.push(name.clone());
         }
         if !by.is_empty() {
@@ -340,20 +356,32 @@ impl Standing {
     }
 }
 
-/// The median of each coordinate; none of nothing.
-fn median_place(seen: &[Vec3]) -> Option<Vec3> {
+/// The weighted median of each coordinate; none of nothing.
+fn median_place(seen: &[(Vec3, f64)]) -> Option<Vec3> {
+    let half = 0.5 * seen.iter().map(|(_, weight)| weight).sum::<f64>();
     let middle = |axis: usize| {
-        let mut list: Vec<f64> = seen.iter().map(|p| p.to_array()[axis]).collect();
-        list.sort_by(f64::total_cmp);
-        let (low, high) = (list.get((list.len().checked_sub(1)?) / 2)?, list.get(list.len() / 2)?);
-        Some(0.5 * (low + high))
+        let mut list: Vec<(f64, f64)> =
+            seen.iter().map(|(place, weight)| (place.to_array()[axis], *weight)).collect();
+        list.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // Half of the weight is reached at one, and passed at that or the next.
+        let (mut sum, mut low) = (0.0, None);
+        for (value, weight) in &list {
+            sum += weight;
+            if sum >= half && low.is_none() {
+                low = Some(*value);
+            }
+            if sum > half {
+                return Some(0.5 * (low? + value));
+            }
+        }
+        list.last().map(|(value, _)| *value)
     };
     Some(Vec3::new(middle(0)?, middle(1)?, middle(2)?))
 }
 
 /// The distance from a place within which 19 of 20 others lie: one frame that is wrong is no motion.
-fn sway(seen: &[Vec3], place: Vec3) -> f64 {
-    let mut far: Vec<f64> = seen.iter().map(|p| (*p - place).norm()).collect();
+fn sway(seen: &[(Vec3, f64)], place: Vec3) -> f64 {
+    let mut far: Vec<f64> = seen.iter().map(|(p, _)| (*p - place).norm()).collect();
     far.sort_by(f64::total_cmp);
     far.get((far.len() * 19).div_ceil(20).saturating_sub(1)).copied().unwrap_or(0.0)
 }
@@ -379,8 +407,8 @@ struct Search<'m> {
 impl<'m> Search<'m> {
     fn new(model: &'m Model, standing: &'m Standing, assumed: &'m Assumptions) -> Self {
         let of_segment = factors_of_segments(model);
-        let target = |&marker: &usize| MarkerTarget { marker, weight: 1.0 };
-        let markers = standing.markers.iter().map(target).collect();
+        let all = standing.markers.iter().zip(&standing.sure);
+        let markers = all.map(|(&marker, &weight)| MarkerTarget { marker, weight }).collect();
         let targets = Targets { markers, ..Targets::default() };
         Self { model, standing, assumed, targets, of_segment }
     }
@@ -389,8 +417,11 @@ impl<'m> Search<'m> {
     fn weigh(&mut self, answer: &FrameAnswer) -> bool {
         let bound = TRUSTED * self.assumed.marker_spread;
         let mut change = 0.0f64;
-        for (target, &error) in self.targets.markers.iter_mut().zip(&answer.marker_errors) {
-            let weight = if error > bound { (bound / error).powi(2) } else { 1.0 };
+        let errors = answer.marker_errors.iter().zip(&self.standing.sure);
+        for (target, (&error, &sure)) in self.targets.markers.iter_mut().zip(errors) {
+            // What is less sure is also expected farther off: its own bound is wider by as much.
+            let error = error * sure.sqrt();
+            let weight = sure * if error > bound { (bound / error).powi(2) } else { 1.0 };
             change = change.max((weight - target.weight).abs());
             target.weight = weight;
         }
@@ -589,10 +620,11 @@ fn placed(
     let mut points = vec![None; scaled.markers().len()];
     let (mut fits, mut far) = (vec![], vec![]);
     let seen = standing.markers.iter().zip(&standing.places).zip(&best.answer.marker_errors);
-    for ((&index, place), &error) in seen {
+    for (((&index, place), &error), &sure) in seen.zip(&standing.sure) {
         let marker = &scaled.markers()[index];
         let mut moved = 0.0;
         if !assumed.keep_markers
+            && sure >= MOVED
             && let (Some(id), Some(place)) = (marker.segment, place)
         {
             let segment = pose.segment(id);

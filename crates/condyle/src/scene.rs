@@ -97,6 +97,7 @@ pub fn baked(
                 mesh: part.mesh,
                 finish: part.finish,
                 weights: part.weights,
+                colours: vec![],
             })
             .collect(),
         times: motion.times.clone(),

@@ -48,9 +48,15 @@ const PARTS: &[(&str, &str)] = &[
     ("parts/hand.toml", include_str!("../models/parts/hand.toml")),
     ("parts/head.toml", include_str!("../models/parts/head.toml")),
     ("parts/human-keypoints.toml", include_str!("../models/parts/human-keypoints.toml")),
+    ("parts/human-limits.toml", include_str!("../models/parts/human-limits.toml")),
     ("parts/human-markers.toml", include_str!("../models/parts/human-markers.toml")),
     ("parts/knee-human.toml", include_str!("../models/parts/knee-human.toml")),
     ("parts/leg-bones.toml", include_str!("../models/parts/leg-bones.toml")),
+    ("parts/limit-shoulder.toml", include_str!("../models/parts/limit-shoulder.toml")),
+    (
+        "parts/limit-shoulder-lenarcic1994.toml",
+        include_str!("../models/parts/limit-shoulder-lenarcic1994.toml"),
+    ),
     ("parts/rib-cage.toml", include_str!("../models/parts/rib-cage.toml")),
     ("parts/vertebrae.toml", include_str!("../models/parts/vertebrae.toml")),
 ];
@@ -186,8 +192,21 @@ fn included(file: &str) -> Result<&'static str, String> {
 /// and the parts that shipped models include.
 #[cfg(feature = "document")]
 pub(crate) fn includable(name: &str) -> Option<&'static str> {
-    let part = || PARTS.iter().find(|(path, _)| *path == name).map(|(_, text)| *text);
-    text(name.strip_suffix(".toml").unwrap_or(name)).or_else(part)
+    text(name.strip_suffix(".toml").unwrap_or(name)).or_else(|| part(name))
+}
+
+/// The text of a part that shipped models include, or a limit that they name, by its path: `parts/limit-shoulder.toml`.
+///
+/// ```
+/// use condyle::{formats::document::limit, shipped};
+/// let text = shipped::part("parts/limit-shoulder.toml").unwrap();
+/// let shoulder = limit::read(text, &mut |_| Err("it stands alone".into())).unwrap().value;
+/// assert_eq!(shoulder.about().child, "humerus");
+/// ```
+#[cfg(feature = "document")]
+#[must_use]
+pub fn part(path: &str) -> Option<&'static str> {
+    PARTS.iter().find(|(known, _)| *known == path).map(|(_, text)| *text)
 }
 
 /// The word that a path is where it is no file, but may be the name of a shipped model: one without

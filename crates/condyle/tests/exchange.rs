@@ -37,6 +37,12 @@ fn every_model_is_read_as_it_was_written() {
         assert!(again.coordinates() == model.coordinates(), "{}", model.name());
         assert!(again.shapes() == model.shapes(), "{}", model.name());
         assert!(again.postures() == model.postures(), "{}", model.name());
+        assert!(again.markers() == model.markers(), "{}", model.name());
+        assert!(again.closures() == model.closures(), "{}", model.name());
+        assert!(again.joint_sets() == model.joint_sets(), "{}", model.name());
+        assert!(again.size_groups() == model.size_groups(), "{}", model.name());
+        let world = |m: &Model| (m.name().to_owned(), m.up(), m.facing());
+        assert_eq!(world(&again), world(&model));
         let parts = |m: &Model| -> Vec<_> {
             m.components().iter().map(|c| (c.law.clone(), c.inputs.clone())).collect()
         };

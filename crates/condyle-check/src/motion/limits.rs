@@ -3,8 +3,7 @@
 
 use crate::{amount, finding, length, rounded};
 use condyle_diagnostics::{Diagnostic, Severity};
-use condyle_math::Quat;
-use condyle_model::component::{Component, FieldLimit, Law, Signal};
+use condyle_model::component::{Component, FieldLimit, Law, PortType, Signal};
 use condyle_model::evaluate::Bound;
 use condyle_model::limit::Limit;
 use condyle_model::limit::field::State;
@@ -164,9 +163,12 @@ fn outside(component: &Component, numbers: &[f64]) -> Option<(f64, Vec<f64>)> {
 /// Of an orientation in a hole of a learned limit: how far it is from what was seen, and the nearest that was.
 fn unseen(component: &Component, numbers: &[f64]) -> Option<(f64, Vec<f64>)> {
     let Law::Field(law) = &component.law else { return None };
-    let q = Quat::from(<[f64; 4]>::try_from(numbers).ok()?);
-    if law.state(q) != State::Unknown {
+    if law.state(numbers) != State::Unknown {
         return None;
+    }
+    // Where nothing is known of what a limit depends on there is no way to what is.
+    if law.limit.dependence().is_some() {
+        return Some((0.0, numbers.to_vec()));
     }
     let strict = FieldLimit { strict: true, ..law.clone() };
     Some((strict.beyond(numbers), strict.legal(numbers)?.to_vec()))
@@ -254,12 +256,13 @@ fn named(model: &Model, component: &Component, numbers: &[f64], valid: &[f64]) -
         }
         Signal::Segment(id) => model.segment(id).name.clone(),
     };
-    let one_orientation = component.inputs.len() == 1 && numbers.len() == 4;
+    let one_orientation = component.law.outputs().0 == PortType::Orientation;
     let width = if one_orientation { 4 } else { 1 };
     let pairs = numbers.chunks(width).zip(valid.chunks(width));
     component
         .inputs
         .iter()
+        .take(component.law.outputs().1)
         .zip(pairs)
         .map(|(&signal, (value, valid))| {
             let kind = if one_orientation {

@@ -6,9 +6,11 @@
 //! not checked. A rotation whose range is a circle has no end to be beyond.
 
 mod jump;
+mod learned;
 mod limits;
 
 pub use jump::Jump;
+pub use learned::Extrapolated;
 pub use limits::{Broken, Nearest};
 
 use crate::closure::{Gap, gaps};
@@ -131,6 +133,8 @@ pub struct MotionCheck {
     pub broken: Vec<Broken>,
     /// Frames of which learned limits know nothing: in their holes, which is no violation.
     pub unseen: Vec<Broken>,
+    /// Learned laws that are used where they were not learned.
+    pub extrapolated: Vec<Extrapolated>,
     /// Loops that are open.
     pub open_loops: Vec<OpenLoop>,
     /// Jumps of rotations.
@@ -196,6 +200,7 @@ pub fn check(model: &Model, table: &Table) -> MotionCheck {
         &cells.iter().filter(|c| c.column.is_some()).map(|c| c.coordinate).collect::<Vec<_>>(),
     );
     let mut watch = limits::Watch::new(model, &program);
+    let mut learned = learned::Learned::new(model);
     let mut turned = Turned::new(model, &program);
     let mut before: Option<Vec<f64>> = None;
     let mut gaps_of = vec![];
@@ -211,6 +216,7 @@ pub fn check(model: &Model, table: &Table) -> MotionCheck {
         // The buffers are made for this program.
         let _ = program.evaluate(stored, Mode::Open, &mut pose);
         watch.frame(frame, time, &pose);
+        learned.frame(frame, time, &pose);
         turned.frame(&pose);
         for id in model.coordinate_ids() {
             let place = model.stored_range(id).start;
@@ -243,7 +249,8 @@ pub fn check(model: &Model, table: &Table) -> MotionCheck {
     }
     check.loops(model, &gaps_of);
     check.summarise(model);
-    check.say(model, table, &motion, watch.say());
+    check.say(model, table, &motion, watch.say().chain(learned.say()));
+    check.extrapolated = learned.found;
     check.broken = watch.broken;
     check.unseen = watch.unknown;
     check

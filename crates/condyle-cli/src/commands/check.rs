@@ -247,6 +247,16 @@ fn motion_json(model: &Model, motion: &MotionCheck) -> Value {
         })).collect::<Vec<_>>(),
         "limits": motion.broken.iter().map(|b| limit(model, b)).collect::<Vec<_>>(),
         "unseen": motion.unseen.iter().map(|b| limit(model, b)).collect::<Vec<_>>(),
+        "extrapolated": motion.extrapolated.iter().map(|e| json!({
+            "law": model.components()[e.component.index()].name,
+            "frames": e.frames,
+            "runs": e.runs,
+            "frame": e.frame,
+            "time": e.time,
+            "distance": e.distance,
+            "controls": e.controls.iter().map(|(id, value)| (key(*id).clone(), json!(value)))
+                .collect::<serde_json::Map<String, Value>>(),
+        })).collect::<Vec<_>>(),
         "loops": motion.open_loops.iter().map(|o| json!({
             "name": o.name,
             "frames": o.frames,

@@ -110,7 +110,11 @@ struct Frames<'a> {
 
 impl<'a> Frames<'a> {
     fn create(model: &'a Model, asked: &'a Fk) -> Result<Self, Failure> {
-        let program = Program::compile(model);
+        // Where limits are off, none that only gives a row has to be made.
+        let program = match asked.limits {
+            Limits::On => Program::compile(model),
+            Limits::Off => Program::compile_unmeasured(model),
+        };
         let pose = Pose::new(&program);
         let mut segments: Vec<(SegmentId, String)> =
             model.segment_ids().map(|id| (id, model.segment(id).name.clone())).collect();

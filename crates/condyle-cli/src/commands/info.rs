@@ -1,5 +1,6 @@
 //! `condyle info`: the contents of a file.
 
+mod law;
 mod limit;
 mod model;
 mod network;
@@ -21,7 +22,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub(crate) struct Info {
     /// A model (a file, or the name of a shipped one), a marker recording, a motion or another table,
-    /// a setup of tracking, a table of names, or a learned limit.
+    /// a setup of tracking, a table of names, a learned limit, or learned laws.
     file: PathBuf,
     /// What a marker at exactly 0 0 0 is; without it, it is missing where it is elsewhere in other frames.
     #[arg(long, value_enum)]
@@ -82,6 +83,7 @@ fn to_json(content: &Content) -> Value {
             json!({ "kind": "goals", "goals": list.goals.iter().map(goal).collect::<Vec<_>>() })
         }
         Content::Limit(limit) => limit::to_json(limit),
+        Content::Law(law) => law::to_json(law),
         Content::Recipe(recipe) => json!({
             "kind": "recipe",
             "child": recipe.child.name,
@@ -113,6 +115,7 @@ fn to_text(content: &Content) -> String {
             format!("{} goals of a pose\n{goals}", list.goals.len())
         }
         Content::Limit(limit) => limit::to_text(limit),
+        Content::Law(law) => law::to_text(law),
         Content::Spheres(spheres) => format!(
             "a learned limit of {} spheres (Herda et al. 2003): {} in {}\n",
             spheres.limit.field.primitives.len(),

@@ -1,4 +1,11 @@
-//! `condyle learn`: models from recordings; so far limits of joints.
+//! `condyle learn`: models from recordings: limits of joints, and laws that couple coordinates.
+
+mod coupling;
+mod joint;
+
+mod given;
+
+pub(super) use given::{bins_json, bins_text};
 
 use super::{Angles, Outcome, ZerosArgument, zeros};
 use crate::failure::{Failure, warn_about, warned};
@@ -7,7 +14,7 @@ use clap::{Args, Subcommand, ValueEnum};
 use condyle::formats::document::limit;
 use condyle::learn::limits::herda2003::{LearnedSpheres, Options};
 use condyle::learn::limits::{LeftOut, Settings, percentile};
-use condyle::learning::{self, How, LearnedFrom, Take, Wanted};
+use condyle::learning::{self, How, HowGiven, LearnedFrom, Take, Wanted, Wished};
 use condyle::math::Quat;
 use condyle::open::{self, Cause, OpenError};
 use condyle::{encode, limits};
@@ -24,6 +31,10 @@ pub(crate) struct Learn {
 enum What {
     /// Learn which rotations of a joint are possible, from recordings of people.
     Limits(Box<Limits>),
+    /// Learn how coordinates follow others, from trials.
+    Coupling(Box<coupling::Coupling>),
+    /// Make a model with a free joint from a standing trial.
+    Joint(Box<joint::Joint>),
 }
 
 /// How a limit is learned.
@@ -57,6 +68,19 @@ struct Limits {
     /// The segment in which it is seen; without it, its parent.
     #[arg(long, value_name = "SEGMENT")]
     reference: Option<String>,
+    /// What the limit depends on: a coordinate, or a segment (or joint) whose rotation it is; of a table a column, of
+    /// inertial recordings a sensor.
+    #[arg(long, value_name = "JOINT|COORDINATE", conflicts_with = "method")]
+    given: Option<String>,
+    /// The segment in which that rotation is seen; without it, its parent.
+    #[arg(long, value_name = "SEGMENT", requires = "given")]
+    given_reference: Option<String>,
+    /// Which markers give that rotation: a second recipe.
+    #[arg(long, value_name = "R.toml", requires = "recipe")]
+    given_recipe: Option<PathBuf>,
+    /// By how much a boundary may move with what it depends on, in degrees per degree; 0.5 without it.
+    #[arg(long, value_name = "RATIO", value_parser = slope)]
+    slope: Option<f64>,
     /// The method.
     #[arg(long, value_enum, default_value = "closing")]
     method: Method,
@@ -101,10 +125,18 @@ fn share(text: &str) -> Result<f64, String> {
     share.ok_or_else(|| "give a share, from 0.5 to 1".to_owned())
 }
 
+/// A slope from 0 to 10.
+fn slope(text: &str) -> Result<f64, String> {
+    let slope = text.parse().ok().filter(|slope: &f64| (0.0..=10.0).contains(slope));
+    slope.ok_or_else(|| "give a number from 0 to 10".to_owned())
+}
+
 impl Learn {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
         match self.what {
             What::Limits(limits) => limits.run(),
+            What::Coupling(coupling) => coupling.run(),
+            What::Joint(joint) => joint.run(),
         }
     }
 }
@@ -125,6 +157,7 @@ impl Limits {
             .recordings
             .iter()
             .chain(&self.recipe)
+            .chain(&self.given_recipe)
             .chain(&self.model)
             .map(PathBuf::as_path)
             .collect();
@@ -149,6 +182,18 @@ impl Limits {
         };
         let started = std::time::Instant::now();
         let (document, text, report) = match self.method {
+            Method::Closing if wanted.given.is_some() => {
+                let by = HowGiven { slope: self.slope, step: None };
+                let learned = self.told(learning::learn_given(&takes, &how, &by, name))?;
+                warn_about(&self.recordings[0], &learned.warnings);
+                let seconds = started.elapsed().as_secs_f64();
+                if self.mesh.is_some() {
+                    let field = learned.limit.field();
+                    self.drawn(&|q| field.distance(q), name)?;
+                }
+                let report = given::report(&takes, &learned, seconds);
+                (limit::write(&learned.limit), given::text(&takes, &learned), report)
+            }
             Method::Closing => {
                 let learned = self.told(learning::learn(&takes, &how, name))?;
                 warn_about(&self.recordings[0], &learned.warnings);
@@ -200,6 +245,18 @@ impl Limits {
             }
             None => None,
         };
+        let given_recipe = match &self.given_recipe {
+            Some(path) => {
+                let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+                Some((name, warned(path, open::recipe(path)?)))
+            }
+            None => None,
+        };
+        let given = (self.given.is_some() || given_recipe.is_some()).then(|| Wished {
+            name: self.given.clone().unwrap_or_default(),
+            reference: self.given_reference.clone(),
+            recipe: given_recipe,
+        });
         let model = match &self.model {
             Some(path) => {
                 let model = warned(path, open::model(path)?);
@@ -213,6 +270,7 @@ impl Limits {
             joint: self.joint.clone(),
             reference: self.reference.clone(),
             subject: self.subject.clone(),
+            given,
             zeros: zeros(self.zeros),
             angles: self.angles.map(Into::into),
         })

@@ -1,6 +1,7 @@
 //! `condyle limits`: what learned limits say of rotations, of the mobility of a joint, and to engines.
 
 mod engine;
+mod mesh;
 mod report;
 
 use super::Outcome;
@@ -10,8 +11,9 @@ use crate::screen::say;
 use clap::{Args, Subcommand};
 use condyle::formats::csv;
 use condyle::learn::limits::State;
+use condyle::learn::limits::dependent::Drivers;
 use condyle::learn::rotations;
-use condyle::learning::{Answered, Limit};
+use condyle::learning::{self, Answered, Limit};
 use condyle::math::Quat;
 use condyle::open::{self, Cause, OpenError};
 use condyle::{Error, Table};
@@ -33,6 +35,8 @@ enum What {
     Report(report::Report),
     /// Tell what game and robot engines can hold of a limit, in their own numbers, and what is lost.
     Engine(engine::Engine),
+    /// Draw the boundary of a limit as a surface (.glb): in quaternion space, or the directions that a bone reaches.
+    Mesh(mesh::Mesh),
 }
 
 impl Limits {
@@ -41,6 +45,7 @@ impl Limits {
             What::Query(query) => query.run(),
             What::Report(report) => report.run(),
             What::Engine(engine) => engine.run(),
+            What::Mesh(mesh) => mesh.run(),
         }
     }
 }
@@ -49,7 +54,8 @@ impl Limits {
 ///
 /// Added are the columns state (valid, invalid, or unknown where nothing was recorded), distance_deg (to the boundary, positive
 /// inside), nx,ny,nz,nw (the nearest valid rotation) and evidence (degrees to the nearest recorded rotation). Rows that
-/// are no rotation keep these cells blank.
+/// are no rotation keep these cells blank. A limit that depends on another joint needs that in the table, too: the column of its
+/// coordinate in radians (or its name with _deg), or gx,gy,gz,gw of its rotation; where these are blank so are the answers.
 #[derive(Debug, Args)]
 struct Query {
     /// The limit: a document of `kind = "limit"`.
@@ -88,8 +94,19 @@ impl Query {
             return Err(self.wrong(error));
         }
         let mut answers: Vec<Option<Answered>> = vec![None; table.rows()];
+        let drivers = match limit.dependence() {
+            None => vec![],
+            Some(given) => {
+                let turns = Some(matches!(given.drivers, Drivers::Rotations(_)));
+                let found = learning::drivers_of_table(&table, &given.name, turns);
+                found.map_err(|error| self.wrong(error))?
+            }
+        };
         for (row, q) in asked.frames.iter().zip(&asked.rotations) {
-            answers[*row] = limit.answer(*q);
+            let driver = drivers.get(*row).copied().flatten();
+            if drivers.is_empty() || driver.is_some() {
+                answers[*row] = limit.answer_given(*q, driver);
+            }
         }
         self.warn(&asked, &table);
         if !self.json || self.output.is_some() {
@@ -182,7 +199,13 @@ fn rows(table: &Table, timed: bool, answers: &[Option<Answered>]) -> String {
             }
             None => text.push_str(",,,,"),
         }
-        let _ = writeln!(text, ",{}", rounded(answer.evidence.to_degrees()));
+        // A limit by formulas has no samples.
+        match answer.evidence.is_nan() {
+            true => text.push_str(",\n"),
+            false => {
+                let _ = writeln!(text, ",{}", rounded(answer.evidence.to_degrees()));
+            }
+        }
     }
     text
 }
@@ -234,6 +257,7 @@ fn report(limit: &Limit, answers: &[Option<Answered>]) -> Value {
     json!({
         "child": about.child,
         "reference": about.reference,
+        "given": limit.dependence().map(|given| &given.name),
         "source": about.source,
         "valid": valid,
         "invalid": invalid,

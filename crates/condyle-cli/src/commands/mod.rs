@@ -97,7 +97,7 @@ enum Command {
     Track(track::Track),
     /// Scale a model to the person of a static trial.
     Scale(scale::Scale),
-    /// Learn from recordings which rotations of a joint are possible.
+    /// Learn from recordings which rotations of a joint are possible, and how coordinates follow others.
     Learn(learn::Learn),
     /// Ask learned limits about rotations, and about the mobility of a joint.
     Limits(limits::Limits),

@@ -1,5 +1,7 @@
 //! `condyle scale`: a model and a person who stands still in, a model of that person out.
 
+mod subject;
+
 use super::{Outcome, ZerosArgument, zeros};
 use crate::failure::{Failure, warn_about, warned};
 use crate::output;
@@ -17,11 +19,11 @@ const SHOWN: usize = 5;
 pub(crate) struct Scale {
     /// The model; each of its size groups has one scale factor.
     model: PathBuf,
-    /// A marker recording of the person standing still.
-    #[arg(long = "static", value_name = "TRIAL")]
-    trial: PathBuf,
-    /// The scaled model, a document (.toml), or `-`.
-    #[arg(short, long, value_name = "SUBJECT.toml")]
+    /// A marker recording of the person standing still; with a setup instead of those that it names.
+    #[arg(long = "static", value_name = "TRIAL", required_unless_present = "setup")]
+    trial: Option<PathBuf>,
+    /// The scaled model, or `-`: a document (.toml); with a setup an `.osim`, which is the model's own file.
+    #[arg(short, long, value_name = "SUBJECT")]
     output: PathBuf,
     /// Whose markers are meant, where the labels of several people begin with their names: `Anna:RFHD`.
     #[arg(long, value_name = "NAME")]
@@ -32,9 +34,21 @@ pub(crate) struct Scale {
     /// Keep the markers of the scaled model instead of moving them to where they were recorded.
     #[arg(long)]
     keep_markers: bool,
-    /// A setup of OpenSim's scaling; not read yet.
+    /// A setup of OpenSim's scaling, for a model that is an `.osim`.
     #[arg(long, value_name = "SCALE.xml")]
     setup: Option<PathBuf>,
+    /// The mass of the person, instead of the setup's.
+    #[arg(long, value_name = "KG", requires = "setup")]
+    mass: Option<f64>,
+    /// Keep the shares of the bodies in the mass.
+    #[arg(long, requires = "setup")]
+    preserve_mass: bool,
+    /// Leave what OpenSim leaves, and do the rest exactly as it does.
+    #[arg(long, requires = "setup")]
+    as_opensim: bool,
+    /// What was scaled and what was not, as Markdown (.md) or JSON (.json).
+    #[arg(long, value_name = "R.json", requires = "setup")]
+    report: Option<PathBuf>,
     /// The results as one JSON document on standard output.
     #[arg(long)]
     json: bool,
@@ -43,12 +57,11 @@ pub(crate) struct Scale {
 impl Scale {
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
         if let Some(setup) = &self.setup {
-            return Err(Failure::new(format!(
-                "{}: setups of OpenSim's scaling are not read; omit --setup: the groups of segments \
-                 that are scaled together are tables [size.…] of the model",
-                setup.display()
-            )));
+            return subject::run(&self, setup);
         }
+        let Some(trial) = &self.trial else {
+            return Err(Failure::new("give --static TRIAL, or --setup SCALE.xml"));
+        };
         let to_screen = self.output == Path::new("-");
         if !to_screen && open::ending(&self.output) != "toml" {
             let path = self.output.display();
@@ -61,31 +74,31 @@ impl Scale {
                 "--json and -o - both want standard output: give one of them",
             ));
         }
-        output::check_distinct(&[&self.model, &self.trial], &[&self.output])?;
+        output::check_distinct(&[&self.model, trial], &[&self.output])?;
         let model = warned(&self.model, open::model(&self.model)?);
-        let recording = warned(&self.trial, open::recording_with(&self.trial, zeros(self.zeros))?);
+        let recording = warned(trial, open::recording_with(trial, zeros(self.zeros))?);
         let assumed = Assumptions {
             subject: self.subject.clone(),
             keep_markers: self.keep_markers,
             ..Assumptions::default()
         };
         let scaled = fit(&model, &recording, &assumed)
-            .map_err(|error| Failure::new(format!("{}: {error}", self.trial.display())))?;
-        warn_about(&self.trial, &scaled.warnings);
+            .map_err(|error| Failure::new(format!("{}: {error}", trial.display())))?;
+        warn_about(trial, &scaled.warnings);
         let subject = match self.output.file_stem() {
             Some(stem) if !to_screen => scaled.model.named(&stem.to_string_lossy()),
             _ => scaled.model.clone(),
         };
         output::write(&self.output, document::write(&subject).as_bytes())?;
         if self.json {
-            output::print_json(&self.report(&scaled))?;
+            output::print_json(&self.report_of(trial, &scaled))?;
         } else if !to_screen {
             output::print(table(&scaled, assumed.keep_markers).as_bytes())?;
         }
         Ok(if scaled.status.is_solved() { Outcome::Done } else { Outcome::DoesNotHold })
     }
 
-    fn report(&self, scaled: &Scaled) -> Value {
+    fn report_of(&self, trial: &Path, scaled: &Scaled) -> Value {
         let factor = |f: &Factor| {
             json!({
                 "name": f.name,
@@ -99,7 +112,7 @@ impl Scale {
             |m: &MarkerFit| json!({ "name": m.name, "error_m": m.error, "moved_m": m.moved });
         json!({
             "model": self.model.to_string_lossy(),
-            "trial": self.trial.to_string_lossy(),
+            "trial": trial.to_string_lossy(),
             "body": factor(&scaled.body),
             "groups": scaled.groups.iter().map(factor).collect::<Vec<_>>(),
             "rms_before_m": scaled.rms_before,

@@ -369,3 +369,23 @@ fn a_limit_is_told_to_engines() {
     let refused = folder.condyle(&["limits", "engine", "L.toml", "--bone", "0,0,0"]).refused();
     assert!(refused.contains("not all 0"), "{refused}");
 }
+
+/// The directions that a bone reaches as a scene: a colour for each corner, and the twists of the two colours in the node's name. Of
+/// turns by up to 60 degrees the bone twists by ±60 at rest and not at all at the boundary.
+#[test]
+fn a_limit_is_drawn_as_a_surface() {
+    let folder = Folder::new("limits-mesh");
+    folder.write("cloud.csv", csv(&ball(1500)));
+    folder.condyle(&["learn", "limits", "cloud.csv", "-o", "L.toml"]).expect(0);
+    let said = folder.condyle(&["limits", "mesh", "L.toml", "-o", "M.glb"]).expect(0);
+    let most = said.split("(yellow) to ").nth(1).and_then(|rest| rest.split('\u{b0}').next());
+    near(most.and_then(|n| n.parse().ok()).expect("degrees"), 120.0, 5.0);
+    let bytes = std::fs::read(folder.path().join("M.glb")).expect("a file");
+    let text = String::from_utf8_lossy(&bytes);
+    assert!(text.contains("COLOR_0") && text.contains("(green-blue)"));
+    let run = ["limits", "mesh", "L.toml", "--space", "quaternion", "-o", "Q.glb"];
+    let said = folder.condyle(&run).expect(0);
+    assert!(said.contains("closed"), "{said}");
+    let refused = folder.condyle(&["limits", "mesh", "L.toml", "-o", "M.obj"]).refused();
+    assert!(refused.contains(".glb"), "{refused}");
+}

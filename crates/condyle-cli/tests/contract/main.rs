@@ -7,9 +7,11 @@ mod batch;
 mod bench;
 mod constrain;
 mod convert;
+mod coupling;
 mod diff;
 mod document;
 mod fk;
+mod given;
 mod info;
 #[cfg(unix)]
 mod keypoints;

@@ -57,6 +57,23 @@ fn standing(frames: usize) -> String {
 }
 
 #[test]
+fn a_static_trial_of_c3d_scales_as_its_trc_does() {
+    let folder = folder("scale-c3d");
+    // Floats of 32 bits are in the C3D; the TRC made of it holds the same.
+    folder.condyle(&["convert", "static.trc", "static.c3d"]).expect(0);
+    folder.condyle(&["convert", "static.c3d", "again.trc"]).expect(0);
+    let [one, two] = ["static.c3d", "again.trc"].map(|trial| {
+        let run = ["scale", "leg.toml", "--static", trial, "-o", "anna.toml", "--json"];
+        let report = folder.condyle(&run).json();
+        (report["groups"].clone(), report["body"].clone(), folder.read("anna.toml"))
+    });
+    assert_eq!(one, two);
+    // Between nothing and the truth, 1.1 and 0.95, by what bones are thought to differ.
+    let thigh = number(&one.0[0]["factor"]) / number(&one.0[1]["factor"]);
+    assert!(thigh > 1.1 && thigh < FACTORS[0] / FACTORS[1], "{thigh}");
+}
+
+#[test]
 fn a_subject_stands_where_the_person_stood() {
     let folder = folder("scale-subject");
     let arguments = ["scale", "leg.toml", "--static", "static.trc", "-o", "anna.toml", "--json"];
@@ -154,7 +171,7 @@ fn what_cannot_be_used_is_refused() {
     };
     let subject = ["-o", "anna.toml"];
     let said = scale("static.trc", &["--setup", "scale.xml", "-o", "anna.toml"]);
-    assert!(said.contains("scale.xml: setups of OpenSim's scaling are not read"), "{said}");
+    assert!(said.contains("end it in .osim"), "{said}");
     assert!(scale("static.trc", &["-o", "anna.osim"]).contains("end it in .toml"));
     assert!(scale("static.trc", &["-o", "-", "--json"]).contains("standard output"));
     assert!(scale("gone.trc", &subject).contains("gone.trc"));
@@ -173,4 +190,76 @@ fn what_cannot_be_used_is_refused() {
     let said = scale("few.trc", &subject);
     assert!(said.contains("3 markers are the fewest, and 2 can be used (TIBIA, ANKLE)"), "{said}");
     assert!(!folder.path().join("anna.toml").exists());
+}
+
+/// A setup that measures the bones of the leg, and places its markers.
+const SETUP: &str = r#"<OpenSimDocument Version="40000"><ScaleTool name="anna"><mass>20</mass>
+<ModelScaler><scaling_order>measurements</scaling_order><MeasurementSet><objects>
+<Measurement name="thigh"><MarkerPairSet><objects><MarkerPair><markers>HIP KNEE</markers></MarkerPair>
+<MarkerPair><markers>HIP MID</markers></MarkerPair></objects></MarkerPairSet>
+<BodyScaleSet><objects><BodyScale name="thigh"><axes>X Y</axes></BodyScale></objects></BodyScaleSet></Measurement>
+<Measurement name="shank"><MarkerPairSet><objects><MarkerPair><markers>TIBIA ANKLE</markers></MarkerPair></objects></MarkerPairSet>
+<BodyScaleSet><objects><BodyScale name="shank"><axes>X Y Z</axes></BodyScale></objects></BodyScaleSet></Measurement>
+</objects></MeasurementSet><marker_file>static.trc</marker_file></ModelScaler>
+<MarkerPlacer><marker_file>static.trc</marker_file></MarkerPlacer></ScaleTool></OpenSimDocument>"#;
+
+#[test]
+fn an_osim_comes_back_as_itself() {
+    let folder = folder("scale-osim");
+    folder.write("scale.xml", SETUP);
+    let run = ["scale", "leg.osim", "--setup", "scale.xml", "-o", "anna.osim", "--report", "r.md"];
+    let report = folder.condyle(&[&run[..], &["--json"]].concat()).json();
+    // Both markers of a pair move with their bone: a ratio of distances is its factor.
+    let [thigh, shank] = FACTORS;
+    for (body, factors) in [("thigh", [thigh, thigh, 1.0]), ("shank", [shank; 3])] {
+        for (axis, factor) in factors.into_iter().enumerate() {
+            near(number(&report["bodies"][body]["factors"][axis]), factor, 1e-9);
+        }
+    }
+    assert_eq!(report["measurements"][0]["pairs"][0]["markers"][1], "KNEE");
+    // The person is the scaled leg, so it fits, and nothing is left to be moved.
+    near(number(&report["placed"]["rms_m"]), 0.0, 1e-6);
+    let text = folder.read("anna.osim");
+    assert_eq!(text.lines().count(), folder.read("leg.osim").lines().count());
+    let knee = text.split("name=\"knee_place\"").nth(1).expect("the knee's frame");
+    let [_, y, _] = three(knee.split("<translation>").nth(1).expect("a translation"));
+    near(y, -0.4 * thigh, 1e-9);
+    assert!(folder.read("r.md").contains("| shank | 0.9500 | 0.9500 | 0.9500 |"));
+    folder
+        .condyle(&["track", "anna.osim", "static.trc", "-o", "w.csv", "--report", "r.json"])
+        .expect(0);
+    let tracked: Value = serde_json::from_str(&folder.read("r.json")).expect("a report");
+    assert!(number(&tracked["rms_m"]) < 1e-5, "{tracked}");
+}
+
+fn three(text: &str) -> [f64; 3] {
+    let words = text.split('<').next().expect("numbers").split_whitespace();
+    let numbers: Vec<f64> = words.map(|word| word.parse().expect("a number")).collect();
+    numbers.try_into().expect("three numbers")
+}
+
+#[test]
+fn what_a_setup_cannot_do_is_said() {
+    let folder = folder("scale-setup-wrong");
+    folder.write("scale.xml", SETUP);
+    let says = |arguments: &[&str], message: &str| {
+        let run = folder.condyle(&[&["scale"], arguments].concat());
+        let error = run.refused();
+        assert!(error.contains(message), "{error}");
+    };
+    let setup = ["--setup", "scale.xml"];
+    let with = |more: &[&'static str]| [more, &setup[..]].concat();
+    says(&with(&["leg.osim", "-o", "anna.toml"]), "end it in .osim");
+    says(&with(&["leg.toml", "-o", "anna.osim"]), "scales an .osim");
+    says(&["leg.osim", "-o", "anna.osim"], "--static");
+    says(&["leg.osim", "--setup", "leg.osim", "-o", "a.osim"], "there is no <ScaleTool>");
+    says(&["leg.osim", "--static", "static.trc", "--mass", "70", "-o", "a.toml"], "--setup");
+    says(&with(&["leg.osim", "--mass", "0", "-o", "anna.osim"]), "mass");
+    folder.write("none.xml", SETUP.replace("static.trc", ""));
+    says(&["leg.osim", "--setup", "none.xml", "-o", "anna.osim"], "<marker_file>");
+    folder.write("names.xml", SETUP.replace("HIP MID", "HIP MIDDLE"));
+    let run = folder.condyle(&["scale", "leg.osim", "--setup", "names.xml", "-o", "anna.osim"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    let error = run.err;
+    assert!(error.contains("measurement `thigh` is not used: `MIDDLE` is no marker"), "{error}");
 }

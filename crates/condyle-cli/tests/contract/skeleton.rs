@@ -118,6 +118,15 @@ fn a_model_goes_to_bvh_looking_along_z_and_a_skeleton_as_it_is() {
     for (found, expected) in nose("nose.bvh").iter().zip([0.0, 1.6, 0.1]) {
         assert!((found - expected).abs() < 1e-9, "{:?}", nose("nose.bvh"));
     }
+    // With z up it looks against y then, as that is the same figure turned upright.
+    let upright = model.replace("kind = \"model\"\n", "kind = \"model\"\nup = \"z\"\n");
+    folder.write("up.toml", upright.replace("[0, 1.6, 0]", "[0, 0, 1.6]"));
+    folder.condyle(&["convert", "up.toml", "up.bvh", "--length-unit", "cm"]).expect(0);
+    let found = folder.condyle(&["fk", "up.bvh", "--length-unit", "cm", "--up-axis", "z"]).json();
+    let found = translation(&found["frames"][0], "nose");
+    for (found, expected) in found.iter().zip([0.0, -0.1, 1.6]) {
+        assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+    }
     // One that was read from a skeleton file looks where it looked.
     let text = "HIERARCHY\nROOT head\n{\nOFFSET 0 160 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT nose\n{\n\
                 OFFSET 10 0 0\nCHANNELS 0\nEnd Site\n{\nOFFSET 1 0 0\n}\n}\n}\nMOTION\nFrames: 1\n\

@@ -13,7 +13,7 @@
 //! knows nothing of any kind. [`model`] is the kind that describes models; its functions are
 //! available here, too. [`setup`] is how recordings are tracked, [`names`] what their labels are called
 //! in models, [`goals`] what a pose should do, [`recipe`] which markers give the orientation of a segment,
-//! [`limit`] which rotations of a segment in another are possible. [`kind()`] tells the kind of a text.
+//! [`limit`] which rotations of a segment in another are possible, [`law`] how coordinates follow others. [`kind()`] tells the kind of a text.
 //!
 //! Reading reports everything that is wrong at once, each with its line and column. Its codes are
 //! `document/...` for what all kinds share, such as a missing key or a wrong type, and `KIND/...`
@@ -29,11 +29,13 @@ mod function;
 pub mod goals;
 mod head;
 mod include;
+pub mod law;
 pub mod limit;
 pub mod model;
 pub mod names;
 mod number;
 pub mod recipe;
+mod region;
 mod render;
 pub mod setup;
 mod template;

@@ -227,7 +227,10 @@ impl Clip {
 
     /// The times of frames: those of all keys; where they are a part of an even grid, the grid; and more where curves
     /// and steps would be lost between them. At most `most`, evenly then, with the warning `glb/frames`.
-    pub(super) fn times(&self, most: usize, warnings: &mut Warnings) -> Vec<f64> {
+    ///
+    /// Beside them the times at which the channels are asked. Keys have 32 bits: one that means a time of the grid is up to
+    /// 3e-8 of it away, where something that moves is elsewhere, and a step has not yet happened.
+    pub(super) fn times(&self, most: usize, warnings: &mut Warnings) -> (Vec<f64>, Vec<f64>) {
         let mut keys: Vec<f64> = vec![];
         let mut known = HashSet::new();
         for channel in &self.channels {
@@ -237,14 +240,23 @@ impl Clip {
         }
         keys.sort_by(f64::total_cmp);
         keys.dedup_by(|b, a| *b - *a < 1e-6);
-        let (Some(&first), Some(&last)) = (keys.first(), keys.last()) else { return vec![] };
+        let (Some(&first), Some(&last)) = (keys.first(), keys.last()) else {
+            return (vec![], vec![]);
+        };
+        let mut asked = None;
         let bends = self.channels.iter().any(|c| c.between != Between::Linear && c.times.len() > 1);
         let mut times = match grid(&keys) {
             Some(steps) => {
                 let part = (last - first) / steps as f64;
                 let finer = if bends { (part / Self::STEP - 1e-3).ceil().max(1.0) } else { 1.0 };
                 let count = steps.saturating_mul(finer as usize);
-                if count < most { even(first, last, count) } else { keys }
+                if count < most {
+                    let grid = even(first, last, count);
+                    asked = Some(at_keys(&grid, &keys, 0.002 * part + 2e-7 * last.abs()));
+                    grid
+                } else {
+                    keys
+                }
             }
             None => {
                 warnings.push(
@@ -256,6 +268,7 @@ impl Clip {
         };
         if bends && grid(&times).is_none() && times.len() < most {
             times = finer(&times, Self::STEP, most);
+            asked = None;
         }
         if times.len() > most {
             let message = format!("the keys of all nodes are at {} times", times.len());
@@ -264,9 +277,23 @@ impl Clip {
                     .with_help(format!("sampled evenly in {most} frames")),
             );
             times = even(first, last, most.saturating_sub(1));
+            asked = None;
         }
-        times
+        let asked = asked.unwrap_or_else(|| times.clone());
+        (times, asked)
     }
+}
+
+/// Each time, or the key that is within `near` of it. Both rise.
+fn at_keys(times: &[f64], keys: &[f64], near: f64) -> Vec<f64> {
+    let mut key = 0;
+    let at = |time: &f64| {
+        while keys.get(key).is_some_and(|key| *key < time - near) {
+            key += 1;
+        }
+        keys.get(key).copied().filter(|key| *key <= time + near).unwrap_or(*time)
+    };
+    times.iter().map(at).collect()
 }
 
 /// Times and so many equal steps between them.
@@ -380,7 +407,7 @@ fn slerp(a: [f64; 4], b: [f64; 4], u: f64) -> [f64; 4] {
 
 #[cfg(test)]
 mod tests {
-    use super::grid;
+    use super::{at_keys, grid};
 
     #[test]
     fn even_times_are_found_in_single_precision() {
@@ -392,5 +419,13 @@ mod tests {
         assert_eq!(grid(&some), Some(48));
         assert_eq!(grid(&[0.0, 0.1, 0.2001, 0.3345]), None);
         assert_eq!(grid(&[0.5]), Some(0));
+    }
+
+    #[test]
+    fn frames_are_asked_for_at_the_keys_that_mean_them() {
+        assert_eq!(
+            at_keys(&[0.0, 0.1, 0.2, 0.3], &[0.0, 0.1 + 3e-9, 0.3 - 2e-9], 1e-8),
+            [0.0, 0.1 + 3e-9, 0.2, 0.3 - 2e-9]
+        );
     }
 }

@@ -170,7 +170,7 @@ impl Figure {
         let stored: usize = freedoms.map(Freedom::stored).sum();
         // Three times the size of the file and 24 MB.
         let most = (3 * size + (24 << 20)) / (8 * stored + 48);
-        let mut times = clip.times(most.max(2), warnings);
+        let (mut times, mut asked) = clip.times(most.max(2), warnings);
         let nodes: Vec<LocalPose> = tree.nodes.iter().map(|node| node.local).collect();
         if times.is_empty()
             && self.moved.iter().zip(&self.nodes).any(|(of, node)| {
@@ -181,11 +181,12 @@ impl Figure {
         {
             // A still figure that does not stand at its rest.
             times.push(0.0);
+            asked.push(0.0);
         }
         let mut frames: Vec<Vec<f64>> = Vec::with_capacity(times.len());
         let mut last = vec![Quat::IDENTITY; self.nodes.len()];
         let mut locals = nodes;
-        for &time in &times {
+        for &time in &asked {
             clip.pose(time, &mut locals);
             let mut frame = Vec::with_capacity(stored);
             for (bone, &node) in self.nodes.iter().enumerate() {

@@ -68,6 +68,8 @@ pub struct Surface {
     pub nodes: [usize; 2],
     /// For each corner the part of the second node, from 0 to 1; empty for none.
     pub weights: Vec<f64>,
+    /// For each corner red, green and blue in linear light, from 0 to 1, in place of the finish's; empty for none.
+    pub colours: Vec<[f32; 3]>,
 }
 
 /// The motion of one node.

@@ -23,6 +23,8 @@ pub(super) struct Corners {
     normals: Vec<[f32; 3]>,
     /// Two nodes and the weight of the second for each corner; none of a mesh that no skin moves.
     bound: Vec<([u16; 4], [f32; 4])>,
+    /// The colour of each corner, of surfaces that have them.
+    colours: Vec<[f32; 3]>,
     pub(super) indices: Vec<u32>,
 }
 
@@ -59,6 +61,10 @@ impl Corners {
             (Checked::Valid(Semantic::Positions), pack.floats(root, &self.positions, array, true)),
             (Checked::Valid(Semantic::Normals), pack.floats(root, &self.normals, array, false)),
         ]);
+        if !self.colours.is_empty() {
+            let colours = pack.floats(root, &self.colours, array, false);
+            attributes.insert(Checked::Valid(Semantic::Colors(0)), colours);
+        }
         if !self.bound.is_empty() {
             let joints: Vec<[u16; 4]> = self.bound.iter().map(|(joints, _)| *joints).collect();
             let weights: Vec<[f32; 4]> = self.bound.iter().map(|(_, weights)| *weights).collect();
@@ -82,19 +88,21 @@ pub(super) fn check(scene: &Scene) -> Result<(), Error> {
         let corners = mesh.positions.len();
         if mesh.normals.len() != corners
             || !(surface.weights.is_empty() || surface.weights.len() == corners)
+            || !(surface.colours.is_empty() || surface.colours.len() == corners)
             || mesh.triangles.iter().flatten().any(|i| *i as usize >= corners)
         {
             return wrong(
                 format!("surface {number} has {corners} corners"),
-                "give each a normal, each or none a weight, and no triangle another corner",
+                "give each a normal, each or none a weight and a colour, and no triangle another corner",
             );
         }
         let finite = |v: &condyle_math::Vec3| v.to_array().iter().all(|x| x.abs() < 1e6);
         let weights = surface.weights.iter().all(|w| (0.0..=1.0).contains(w));
-        if !mesh.positions.iter().chain(&mesh.normals).all(finite) || !weights {
+        let colours = surface.colours.iter().flatten().all(|c| (0.0..=1.0).contains(c));
+        if !mesh.positions.iter().chain(&mesh.normals).all(finite) || !weights || !colours {
             return wrong(
                 format!("surface {number} is not finite"),
-                "places are in metres, weights from 0 to 1",
+                "places are in metres, weights and colours from 0 to 1",
             );
         }
         for node in surface.nodes {
@@ -121,7 +129,9 @@ impl Writer<'_> {
         let mut parts = BTreeMap::<_, Corners>::new();
         for surface in &scene.surfaces {
             let weight = |corner: usize| surface.weights.get(corner).copied().unwrap_or(0.0);
-            let corners = parts.entry(surface.finish).or_default();
+            let coloured = !surface.colours.is_empty();
+            let corners = parts.entry((surface.finish, coloured)).or_default();
+            corners.colours.extend(&surface.colours);
             corners.add(&surface.mesh, &mut |corner| Some((surface.nodes, weight(corner))));
         }
         let mesh = self.mesh(&scene.name, parts)?;

@@ -91,13 +91,9 @@ fn ahead(scene: &Scene) -> Quat {
         UpAxis::Y => Quat::IDENTITY,
         UpAxis::Z => Quat::from([-half, 0.0, 0.0, half]),
     };
-    let front = upright.to_mat3() * scene.facing.direction();
-    let yaw = match front.y.abs() < 0.5 {
-        true => -front.x.atan2(front.z),
-        // One that looks along its own vertical tells nothing.
-        false => 0.0,
-    };
-    Quat::from_axis_angle(Vec3::Y, yaw) * upright
+    // With z up a facing is that of the world with y up, turned by that quarter: here it is turned back.
+    let front = scene.facing.direction();
+    Quat::from_axis_angle(Vec3::Y, -front.x.atan2(front.z)) * upright
 }
 
 /// Validates a scene before anything is built.
@@ -217,7 +213,7 @@ pub(super) struct Writer<'s> {
     pub(super) pack: Pack,
     /// Frame and time of each key.
     kept: Vec<(usize, f32)>,
-    materials: BTreeMap<Finish, Index<Material>>,
+    materials: BTreeMap<(Finish, bool), Index<Material>>,
 }
 
 /// A node that only moves, of a marker or a driven value, and its place at every key.
@@ -279,7 +275,7 @@ impl Writer<'_> {
             mesh = mesh.or_else(|| {
                 let mut corners = skin::Corners::default();
                 corners.add(&ball(radius).mesh(), &mut |_| None);
-                self.mesh("marker", BTreeMap::from([(Finish::Marker, corners)]))
+                self.mesh("marker", BTreeMap::from([((Finish::Marker, false), corners)]))
             });
             let node = self.root.push(Node {
                 name: Some(marker.name.clone()),
@@ -310,11 +306,11 @@ impl Writer<'_> {
         nodes
     }
 
-    /// A mesh with one primitive for each finish; none without triangles.
+    /// A mesh with one primitive for each finish, with colours of its corners and without; none without triangles.
     pub(super) fn mesh(
         &mut self,
         name: &str,
-        parts: BTreeMap<Finish, skin::Corners>,
+        parts: BTreeMap<(Finish, bool), skin::Corners>,
     ) -> Option<Index<Mesh>> {
         let mut primitives = Vec::new();
         for (finish, corners) in parts {
@@ -345,12 +341,14 @@ impl Writer<'_> {
         })
     }
 
-    fn material(&mut self, finish: Finish) -> Index<Material> {
+    /// How a finish looks; where corners have colours of their own it is white, for the two are multiplied.
+    fn material(&mut self, (finish, coloured): (Finish, bool)) -> Index<Material> {
         let root = &mut self.root;
-        *self.materials.entry(finish).or_insert_with(|| {
+        *self.materials.entry((finish, coloured)).or_insert_with(|| {
             let roughness = if finish == Finish::Bone { 0.7 } else { 0.5 };
-            let [red, green, blue] = finish.colour();
-            let name = Some(finish.name().to_owned());
+            let [red, green, blue] = if coloured { [1.0; 3] } else { finish.colour() };
+            let name = if coloured { "by corner" } else { finish.name() };
+            let name = Some(name.to_owned());
             let mut material = Material { name, ..Material::default() };
             material.pbr_metallic_roughness.base_color_factor.0 = [red, green, blue, 1.0];
             material.pbr_metallic_roughness.metallic_factor.0 = 0.0;

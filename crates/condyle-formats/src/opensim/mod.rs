@@ -1,6 +1,8 @@
 //! OpenSim's XML files.
 
 pub mod model;
+pub mod scale;
+pub mod scale_setup;
 pub mod setup;
 mod write;
 
@@ -37,6 +39,14 @@ pub fn read(bytes: &[u8], include: &mut Include<'_>) -> Result<Read<Holding>, Er
     }
     if setup::tasks_of(root).is_some() {
         return Ok(setup::tasks_from_document(document)?.map(Holding::Tasks));
+    }
+    if let Some(tool) = scale_setup::tool_of(root) {
+        return Err(tool
+            .error(
+                "osim/scale-setup",
+                "this is a setup of scaling, no model and no setup of tracking",
+            )
+            .with_help("give it to `condyle scale --setup`"));
     }
     let message = "the file holds no <Model>, no <InverseKinematicsTool> and no <IKTaskSet>";
     let found = root.children().next().unwrap_or(root);

@@ -274,7 +274,7 @@ fn no_marker_tasks(at: Element<'_>) -> Diagnostic {
 }
 
 /// A path, unless it is blank or `Unassigned`.
-fn assigned(path: &str) -> Option<String> {
+pub(super) fn assigned(path: &str) -> Option<String> {
     let path = path.trim();
     (!path.is_empty() && !path.eq_ignore_ascii_case("unassigned")).then(|| path.to_owned())
 }
@@ -283,7 +283,7 @@ fn file(tool: Element<'_>, name: &str) -> Option<String> {
     property(tool, name).map(Element::text).and_then(assigned)
 }
 
-fn time_range(tool: Element<'_>) -> Result<Option<[f64; 2]>, Error> {
+pub(super) fn time_range(tool: Element<'_>) -> Result<Option<[f64; 2]>, Error> {
     let Some(place) = property(tool, "time_range") else { return Ok(None) };
     let mut words = place.text().split_whitespace();
     if words.all(|word| assigned(word).is_none()) {
@@ -351,7 +351,7 @@ pub(super) fn tasks_from_document(document: Read<XmlDocument>) -> Result<Read<Ik
 }
 
 /// The tasks of a set; of two with the same name the first.
-fn task_set(set: Element<'_>, warnings: &mut Warnings) -> Result<IkTaskSet, Error> {
+pub(super) fn task_set(set: Element<'_>, warnings: &mut Warnings) -> Result<IkTaskSet, Error> {
     let mut tasks = IkTaskSet::default();
     let mut seen = std::collections::HashSet::new();
     for task in set.child("objects").unwrap_or(set).children() {

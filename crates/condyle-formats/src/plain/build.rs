@@ -172,11 +172,6 @@ impl Builder<'_> {
                         found.push(input.map(|input| rules.one(function.clone(), input)));
                     }
                 }
-                Law::Combine(combine) => {
-                    found.push(
-                        inputs.map(|inputs| rules.several(combine.function.clone(), &inputs)),
-                    );
-                }
                 Law::Angles(law) => {
                     let from =
                         component.inputs.first().and_then(|from| self.orientations.get(from));
@@ -186,6 +181,10 @@ impl Builder<'_> {
                     {
                         found.extend(values.map(Some));
                     }
+                }
+                law if law.several().is_some() => {
+                    let function = law.several().zip(inputs);
+                    found.push(function.map(|(f, inputs)| rules.several(f.clone(), &inputs)));
                 }
                 law if law.bounds() => {
                     self.dropped.push(name_of(self.model, component));

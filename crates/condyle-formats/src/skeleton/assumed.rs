@@ -194,7 +194,7 @@ pub fn facing_of(joints: &[(&str, Vec3)], up: UpAxis) -> Option<Facing> {
         UpAxis::Z => Vec3::Z,
     };
     let ahead = left.cross(above);
-    let along = |facing: &Facing| ahead.dot(facing.direction());
+    let along = |facing: &Facing| ahead.dot(facing.ahead(up));
     let best = Facing::ALL.into_iter().max_by(|a, b| along(a).total_cmp(&along(b)))?;
     (along(&best) > 0.8 * ahead.norm()).then_some(best)
 }

@@ -131,11 +131,13 @@ fn read_rows(text: &str, fast: bool) -> Result<Read<Table>, Error> {
         );
     }
     let names = distinct(&names, names_line, &mut warnings);
+    // Headers of OpenSim's tools are sentences with commas.
+    let cells = text.get(names_line.start + names_line.text.len()..).unwrap_or_default();
     let mut rows = Rows {
         delimiter,
         timed,
         names: &names,
-        decimal_comma: decimal_comma(&header, delimiter, text.contains(','), lines.clone()),
+        decimal_comma: decimal_comma(&header, delimiter, cells.contains(','), lines.clone()),
         widths: Vec::new(),
         room: text.len() + 100_000,
         times: Vec::new(),

@@ -74,6 +74,14 @@ impl<'d> Element<'d> {
         }
     }
 
+    /// The bytes that it takes in the text it was parsed from; none of one that was put in.
+    #[cfg(feature = "opensim")]
+    pub(crate) fn span(self) -> std::ops::Range<usize> {
+        let node = self.node();
+        let start = node.map_or(0, |n| usize::try_from(n.byte).unwrap_or(0));
+        start..start + node.map_or(0, |n| n.length as usize)
+    }
+
     /// An error about this element, at its place.
     #[must_use]
     pub fn error(self, code: &'static str, message: impl Into<String>) -> Error {

@@ -21,6 +21,8 @@
 //! # Ok::<(), condyle_formats::Error>(())
 //! ```
 
+#[cfg(feature = "opensim")]
+pub(crate) mod edit;
 mod element;
 mod repair;
 
@@ -64,6 +66,9 @@ struct Node {
     line: u32,
     column: u32,
     byte: u64,
+    /// How many bytes it takes in the text.
+    #[cfg(feature = "opensim")]
+    length: u32,
 }
 
 /// A part of the heap.
@@ -102,19 +107,9 @@ impl XmlDocument {
     ///
     /// As [`XmlDocument::parse`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Read<Self>, Error> {
-        let marked = match bytes {
-            [b'<', 0, ..] => Some([b"\xff\xfe", bytes].concat()),
-            [0, b'<', ..] => Some([b"\xfe\xff", bytes].concat()),
-            _ => None,
-        };
-        let text = decode(marked.as_deref().unwrap_or(bytes))?;
+        let text = text_of(bytes)?;
         let mut read = Self::parse(&text.value)?;
-        // A file that declares Latin-1 was read correctly: no warning.
-        let head: String = text.value.chars().take(200).collect::<String>().to_lowercase();
-        if !head.contains("encoding=\"iso-8859-1\"") && !head.contains("encoding=\"windows-1252\"")
-        {
-            read.warnings.splice(0..0, text.warnings);
-        }
+        read.warnings.splice(0..0, text.warnings);
         Ok(read)
     }
 
@@ -161,6 +156,10 @@ impl XmlDocument {
         }
         let attributes = node.attributes().map(|a| (a.name(), a.value()));
         self.append(node.tag_name().name(), own.trim(), attributes, parent, index, place);
+        #[cfg(feature = "opensim")]
+        if let Some(own) = self.nodes.last_mut() {
+            own.length = u32::try_from(node.range().len()).unwrap_or(0);
+        }
     }
 
     /// This document with what stands inside elements of others put first into some of its own. The
@@ -220,6 +219,8 @@ impl XmlDocument {
             line: u32::try_from(place.line).unwrap_or(0),
             column: u32::try_from(place.column).unwrap_or(0),
             byte: place.byte.unwrap_or_default(),
+            #[cfg(feature = "opensim")]
+            length: 0,
         });
         let Some(mother) = self.nodes.get_mut(parent as usize) else { return };
         let before = mother.last_child;
@@ -249,6 +250,25 @@ impl XmlDocument {
     fn slice(&self, span: Span) -> &str {
         self.heap.get(span.start as usize..span.end as usize).unwrap_or_default()
     }
+}
+
+/// The text of a file, as [`XmlDocument::from_bytes`] decodes it.
+pub(crate) fn text_of(bytes: &[u8]) -> Result<Read<std::borrow::Cow<'_, str>>, Error> {
+    let marked = match bytes {
+        [b'<', 0, ..] => Some([b"\xff\xfe", bytes].concat()),
+        [0, b'<', ..] => Some([b"\xfe\xff", bytes].concat()),
+        _ => None,
+    };
+    let mut text = match &marked {
+        Some(marked) => decode(marked)?.map(|text| std::borrow::Cow::Owned(text.into_owned())),
+        None => decode(bytes)?,
+    };
+    // A file that declares Latin-1 was read correctly: no warning.
+    let head: String = text.value.chars().take(200).collect::<String>().to_lowercase();
+    if head.contains("encoding=\"iso-8859-1\"") || head.contains("encoding=\"windows-1252\"") {
+        text.warnings.clear();
+    }
+    Ok(text)
 }
 
 /// The parser's error with the wording and places of this crate.

@@ -107,12 +107,23 @@ fn a_model_faces_along_an_axis() {
     assert_eq!(model.coordinates()[0].drives.as_deref(), Some("mouth smile"));
     let again = super::read(&condyle_formats::document::write(&model));
     assert_eq!((again.facing(), again.coordinates()), (model.facing(), model.coordinates()));
+    // With z up a document names the axis that is meant, and the name of the world with y up is known.
+    for name in ["-y", "+z"] {
+        let text = text.replace("facing = \"-z\"", &format!("up = \"z\"\nfacing = \"{name}\""));
+        let model = super::read(&text);
+        assert_eq!(model.facing().name_in(model.up()), "-y");
+        let written = condyle_formats::document::write(&model);
+        assert!(written.contains("facing = \"-y\""), "{written}");
+        assert_eq!(super::read(&written).facing(), model.facing());
+    }
+    let wrong = text.replace("-z", "-y");
+    assert!(condyle_formats::document::read(&wrong, &mut |_| Err("alone".into())).is_err());
     let wrong = text.replace("-z", "forward");
     let error = condyle_formats::document::read(&wrong, &mut |_| Err("alone".into())).unwrap_err();
     assert_eq!(
         error[0].to_string(),
         "line 3, column 10: unknown direction `forward` (give the axis along which the character looks: \
-         \"+x\", \"-x\", \"+z\" or \"-z\")"
+         \"+x\", \"-x\", \"+z\" or \"-z\"; where z is up \"+y\" or \"-y\")"
     );
 }
 

@@ -1,5 +1,6 @@
 //! Limits learned from samples of shapes whose inside is known.
 
+mod formulas;
 mod shapes;
 
 use condyle_learn::limits::{Cloud, Field, Settings, State, learn};

@@ -26,7 +26,7 @@
 //! open mode.
 
 use super::{Contract, Fault, Geometry, Kind, Mirrored, Port, PortType, Reflection};
-use crate::limit::{Cone, ConePoint, Limit, MOST_ROWS, Row};
+use crate::limit::{Cone, ConePoint, Limit, MOST_LIMITED, MOST_ROWS, Row, padded};
 use condyle_diagnostics::Severity;
 use condyle_math::{Mat3, Quat, Scalar, Vec3};
 use std::f64::consts::{PI, TAU};
@@ -225,24 +225,25 @@ impl Limit for JointCone {
         let (rotation, moving) = self.rotation(numbers);
         self.cone.rows(rotation).map(|(value, along)| {
             let [a, b, c] = moving.map(|axis| along.dot(axis));
-            (value, [a, b, c, 0.0])
+            (value, padded([a, b, c]))
         })
     }
 
-    fn legal(&self, asked: &[f64]) -> Option<[f64; 4]> {
+    fn legal(&self, asked: &[f64]) -> Option<[f64; MOST_LIMITED]> {
         let rotation = self.turned(asked);
         if let Swinging::Directions(_) = self.of {
             let direction = rotation * self.cone.rest();
             if self.cone.contains(direction) {
                 return None;
             }
-            return Some(self.angles(self.cone.project(direction).direction, None, asked));
+            let direction = self.cone.project(direction).direction;
+            return Some(padded(self.angles(direction, None, asked)));
         }
         let legal = self.cone.legal(rotation);
         if !legal.moved {
             return None;
         }
-        Some(match self.axes() {
+        Some(padded(match self.axes() {
             Some([.., third]) => self.angles(legal.rotation * third, Some(legal.rotation), asked),
             None => {
                 // Of q and -q the one nearer to the requested quaternion.
@@ -250,7 +251,7 @@ impl Limit for JointCone {
                 let same: f64 = q.iter().zip(asked).map(|(a, b)| a * b).sum();
                 if same < 0.0 { q.map(|x| -x) } else { q }
             }
-        })
+        }))
     }
 
     fn beyond(&self, numbers: &[f64]) -> f64 {

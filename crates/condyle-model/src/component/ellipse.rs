@@ -14,7 +14,7 @@
 //! nearest legal numbers are continuous.
 
 use super::{Contract, Geometry, Kind, Port, PortType};
-use crate::limit::{Limit, MOST_LIMITED, MOST_ROWS, NO_ROW, Row};
+use crate::limit::{Limit, MOST_LIMITED, MOST_ROWS, NO_ROW, Row, padded};
 use std::fmt;
 
 /// Two numbers inside an ellipse.
@@ -161,7 +161,7 @@ impl Limit for Ellipse {
         let off = [point[0] - on[0], point[1] - on[1]];
         let distance = -(off[0] * normal[0] + off[1] * normal[1]);
         let [x, y] = self.outward(normal);
-        [(distance, [-x, -y, 0.0, 0.0]), NO_ROW, NO_ROW]
+        [(distance, padded([-x, -y])), NO_ROW, NO_ROW]
     }
 
     fn legal(&self, numbers: &[f64]) -> Option<[f64; MOST_LIMITED]> {
@@ -173,7 +173,7 @@ impl Limit for Ellipse {
             return None;
         }
         let [x, y] = self.outward(self.nearest(point));
-        Some([self.centre[0] + x, self.centre[1] + y, 0.0, 0.0])
+        Some(padded([self.centre[0] + x, self.centre[1] + y]))
     }
 
     fn margin(&self, _: &[f64]) -> f64 {

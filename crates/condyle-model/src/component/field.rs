@@ -11,13 +11,20 @@
 //! ∂g/∂δ = B · ∂d/∂ω    along q·exp(δ)
 //! ```
 //!
+//! A limit that depends on another joint has its driver at a second port, a coordinate or the rotation of a segment in another:
+//! the row has slopes by both, and what moves in posed mode is the orientation alone.
+//!
 //! Of the other side of a body the mirror image is asked: of q = (v, w) it is (-D·v, w).
 //!
+//! Of a limit by formulas that goes some way beyond its ends, g is at most that way, and within the ends no field is asked and
+//! none is made: there g is that way, and its slope 0.
+//!
 //! Holes of the field, where nothing was seen inside the outer boundary, are allowed unless `strict`.
-//! Kinks: none in g but where the nearest boundary changes, which the field rounds; in posed mode at the boundary.
+//! Kinks: none in g but where the nearest boundary changes, which the field rounds, and at the ends of formulas; in posed mode
+//! at the boundary.
 
 use super::{Contract, Fault, Geometry, Kind, Mirrored, Port, PortType, Reflection};
-use crate::limit::field::{LearnedLimit, State};
+use crate::limit::field::{Driver, Drivers, LearnedLimit, State};
 use crate::limit::{Limit, MOST_LIMITED, MOST_ROWS, NO_ROW, Row};
 use condyle_diagnostics::Severity;
 use condyle_math::{Quat, Vec3};
@@ -32,6 +39,10 @@ pub struct FieldLimit {
     pub in_reference: Quat,
     /// The axes of the limit's child in those of the model's segment, a unit quaternion.
     pub in_segment: Quat,
+    /// Of a limit that depends on a rotation, the axes of its driver's reference in those of the model's.
+    pub driver_in_reference: Quat,
+    /// The axes of its driver in those of the model's segment.
+    pub driver_in_segment: Quat,
     /// Of a limit of the other side of the body, the plane between the sides.
     pub mirrored: Option<Reflection>,
     /// Whether holes, where nothing was seen, are not allowed either.
@@ -42,8 +53,16 @@ impl FieldLimit {
     /// A limit whose axes are those of the segments.
     #[must_use]
     pub fn new(limit: Arc<LearnedLimit>) -> Self {
-        let (in_reference, in_segment) = (Quat::IDENTITY, Quat::IDENTITY);
-        Self { limit, in_reference, in_segment, mirrored: None, strict: false }
+        let same = Quat::IDENTITY;
+        Self {
+            limit,
+            in_reference: same,
+            in_segment: same,
+            driver_in_reference: same,
+            driver_in_segment: same,
+            mirrored: None,
+            strict: false,
+        }
     }
 
     /// A rotation of the segment in its reference as one of the limit.
@@ -68,31 +87,101 @@ impl FieldLimit {
         }
     }
 
-    /// Whether an orientation is possible, as the field has it.
+    /// The driver as the limit has it, of what is at the component's ports: the orientation, then the driver.
     #[must_use]
-    pub fn state(&self, q: Quat) -> State {
-        self.limit.field().state(self.inward(q)).0
+    pub fn driver(&self, numbers: &[f64]) -> Option<Driver> {
+        match &self.limit.dependence()?.drivers {
+            Drivers::Scalars(_) => numbers.get(4).copied().map(Driver::Scalar),
+            Drivers::Rotations(_) => {
+                let q = self.reflected(orientation(numbers.get(4..8)?));
+                let q = self.driver_in_reference.conjugate() * q * self.driver_in_segment;
+                Some(Driver::Rotation(q.normalized()))
+            }
+        }
+    }
+
+    /// Whether an orientation is possible, as the field has it, of what is at the component's ports.
+    #[must_use]
+    pub fn state(&self, numbers: &[f64]) -> State {
+        let p = self.inward(orientation(numbers));
+        match self.limit.given().zip(self.driver(numbers)) {
+            Some((given, driver)) => given.state(p, driver),
+            None if self.within(p).is_some() => State::Valid,
+            None => self.limit.field().state(p).0,
+        }
+    }
+
+    /// Of a limit by formulas how far it goes beyond their ends, if at all.
+    fn beyond_ends(&self) -> Option<f64> {
+        self.limit.ground().shape.as_ref().map(|shape| shape.beyond()).filter(|way| *way > 0.0)
+    }
+
+    /// The same, of a rotation that is within the ends: at least so far it is inside.
+    fn within(&self, p: Quat) -> Option<f64> {
+        let shape = self.limit.ground().shape.as_ref()?;
+        self.beyond_ends().filter(|_| shape.contains(p))
+    }
+
+    /// The distance and its slopes: three of the orientation, then those of the driver.
+    fn distance_and_slopes(&self, numbers: &[f64]) -> (f64, [f64; MOST_LIMITED]) {
+        let mut slopes = [0.0; MOST_LIMITED];
+        let turned = |slope: Vec3| self.mirrored.map_or(slope, |at| at.turning(slope));
+        let Some((given, driver)) = self.limit.given().zip(self.driver(numbers)) else {
+            let (distance, slope) = self.distance_and_slope(orientation(numbers));
+            slopes[..3].copy_from_slice(&slope.to_array());
+            return (distance, slopes);
+        };
+        let sloped = given.distance_and_slopes(self.inward(orientation(numbers)), driver);
+        let slope = turned(self.in_segment.to_mat3() * sloped.child);
+        slopes[..3].copy_from_slice(&slope.to_array());
+        let of_driver = match driver {
+            Driver::Scalar(_) => sloped.driver,
+            Driver::Rotation(_) => {
+                let slope = self.driver_in_segment.to_mat3() * Vec3::from(sloped.driver);
+                turned(slope).to_array()
+            }
+        };
+        slopes[3..6].copy_from_slice(&of_driver);
+        (sloped.distance, slopes)
     }
 
     fn distance_and_slope(&self, q: Quat) -> (f64, Vec3) {
-        let (field, p) = (self.limit.field(), self.inward(q));
+        let p = self.inward(q);
+        if let Some(way) = self.within(p) {
+            return (way, Vec3::ZERO);
+        }
+        let field = self.limit.field();
         let (distance, gradient) = match self.strict {
             true => field.distance_and_gradient(p),
             false => field.outer_distance_and_gradient(p),
         };
+        if let Some(way) = self.beyond_ends().filter(|way| distance > *way) {
+            return (way, Vec3::ZERO);
+        }
         let slope = self.in_segment.to_mat3() * gradient;
         (distance, self.mirrored.map_or(slope, |at| at.turning(slope)))
     }
 
-    fn distance(&self, q: Quat) -> f64 {
-        let (field, p) = (self.limit.field(), self.inward(q));
-        if self.strict { field.distance(p) } else { field.outer_distance(p) }
+    fn distance(&self, numbers: &[f64]) -> f64 {
+        let p = self.inward(orientation(numbers));
+        if let Some((given, driver)) = self.limit.given().zip(self.driver(numbers)) {
+            return given.distance(p, driver);
+        }
+        self.within(p).unwrap_or_else(|| {
+            let field = self.limit.field();
+            let distance = if self.strict { field.distance(p) } else { field.outer_distance(p) };
+            self.beyond_ends().map_or(distance, |way| distance.min(way))
+        })
     }
 
     /// The nearest that is allowed, with the sign nearer to the given one.
-    fn nearest(&self, q: Quat) -> Quat {
-        let (field, p) = (self.limit.field(), self.inward(q));
-        let nearest = if self.strict { field.nearest(p) } else { field.outer_nearest(p) };
+    fn nearest(&self, q: Quat, driver: Option<Driver>) -> Quat {
+        let p = self.inward(q);
+        let nearest = match (self.limit.given().zip(driver), self.strict) {
+            (Some((given, driver)), _) => given.nearest(p, driver),
+            (None, true) => self.limit.field().nearest(p),
+            (None, false) => self.limit.field().outer_nearest(p),
+        };
         let nearest = self.outward(nearest).normalized();
         if nearest.dot(q) < 0.0 { -nearest } else { nearest }
     }
@@ -115,33 +204,38 @@ impl Limit for FieldLimit {
     }
 
     fn rows_at(&self, numbers: &[f64]) -> [Row; MOST_ROWS] {
-        let (distance, slope) = self.distance_and_slope(orientation(numbers));
-        [(distance, [slope.x, slope.y, slope.z, 0.0]), NO_ROW, NO_ROW]
+        [self.distance_and_slopes(numbers), NO_ROW, NO_ROW]
     }
 
     fn legal(&self, numbers: &[f64]) -> Option<[f64; MOST_LIMITED]> {
-        let q = orientation(numbers);
-        let distance = self.distance(q);
+        let distance = self.distance(numbers);
         if distance >= -ROUNDING || distance.is_nan() {
             return None;
         }
-        Some(self.nearest(q).to_array())
+        // The driver stays.
+        let mut legal = [0.0; MOST_LIMITED];
+        for (to, from) in legal.iter_mut().zip(numbers) {
+            *to = *from;
+        }
+        let nearest = self.nearest(orientation(numbers), self.driver(numbers));
+        legal[..4].copy_from_slice(&nearest.to_array());
+        Some(legal)
     }
 
     fn beyond(&self, numbers: &[f64]) -> f64 {
-        (-self.distance(orientation(numbers))).max(0.0)
+        (-self.distance(numbers)).max(0.0)
     }
 
     /// The least of 1, 2, 4 and 8 degrees within which the nearest rotation was found to jump.
     fn margin(&self, numbers: &[f64]) -> f64 {
-        let q = orientation(numbers);
-        if self.distance(q) >= -ROUNDING {
+        let (q, driver) = (orientation(numbers), self.driver(numbers));
+        if self.distance(numbers) >= -ROUNDING {
             return f64::INFINITY;
         }
-        let here = self.nearest(q);
+        let here = self.nearest(q, driver);
         let jumps = |angle: &f64| {
             Vec3::UNITS.into_iter().flat_map(|axis| [axis, -axis]).any(|axis| {
-                let there = self.nearest(q * Quat::exp(axis * *angle));
+                let there = self.nearest(q * Quat::exp(axis * *angle), driver);
                 here.angle_to(there) > 10.0 * angle
             })
         };
@@ -150,21 +244,38 @@ impl Limit for FieldLimit {
 }
 
 impl FieldLimit {
-    pub(crate) const KIND: Kind =
-        Kind { name: "field", ports: &[Port::one("orientation", PortType::Orientation)] };
+    pub(crate) const KIND: Kind = Kind {
+        name: "field",
+        ports: &[
+            Port::one("orientation", PortType::Orientation),
+            Port::perhaps("driver", PortType::Scalar),
+            Port::perhaps("driver_orientation", PortType::Orientation),
+        ],
+    };
 }
 
 impl Contract for FieldLimit {
+    fn has(&self, port: &Port) -> bool {
+        let drivers = self.limit.dependence().map(|dependence| &dependence.drivers);
+        match port.name {
+            "driver" => matches!(drivers, Some(Drivers::Scalars(_))),
+            "driver_orientation" => matches!(drivers, Some(Drivers::Rotations(_))),
+            _ => true,
+        }
+    }
+
     fn faults(&self) -> Vec<Fault> {
         let unit = |q: Quat| (q.dot(q) - 1.0).abs() < 1e-6;
-        if unit(self.in_reference) && unit(self.in_segment) {
+        let axes =
+            [self.in_reference, self.in_segment, self.driver_in_reference, self.driver_in_segment];
+        if axes.into_iter().all(unit) {
             return vec![];
         }
         vec![Fault {
             severity: Severity::Error,
             code: "model/rotation",
             said: "has axes that are no rotation".to_owned(),
-            help: "give `in_reference` and `in_segment` as unit quaternions, x, y, z, w",
+            help: "give `in_reference`, `in_segment` and those of the driver as unit quaternions, x, y, z, w",
         }]
     }
 

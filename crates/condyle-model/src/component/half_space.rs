@@ -77,10 +77,13 @@ impl HalfSpace {
     }
 }
 
+/// The most numbers in a sum.
+const MOST_SUMMED: usize = 4;
+
 impl HalfSpace {
     pub(crate) const KIND: Kind = Kind {
         name: "half_space",
-        ports: &[Port::list("inputs", PortType::Scalar).at_most(MOST_LIMITED)],
+        ports: &[Port::list("inputs", PortType::Scalar).at_most(MOST_SUMMED)],
     };
 }
 

@@ -13,6 +13,7 @@
 //! | --- | --- |
 //! | [`Map`] | scalar → scalars, one function each |
 //! | [`Combine`] | scalars → scalar |
+//! | [`Correlate`] | scalars → scalar, learned, with the region where it was |
 //! | [`Depend`] | driver, passive → passive, clamped to bounds that the driver sets |
 //! | [`JointCone`] | angles of a ball joint, or its orientation → the legal ones |
 //! | [`Ellipse`] | two scalars → the legal ones |
@@ -47,6 +48,7 @@ mod compensate;
 mod cone;
 mod constant_curvature;
 mod contact;
+mod correlate;
 mod curve;
 mod custom;
 mod depend;
@@ -76,6 +78,7 @@ pub use compensate::Compensate;
 pub use cone::{JointCone, Swinging};
 pub use constant_curvature::ConstantCurvature;
 pub use contact::{Contact, ContactError, ContactPair, Glide, Gliding};
+pub use correlate::{Correlate, Region};
 pub use curve::{Curve, Heading};
 pub use custom::{Custom, ErasedLaw, LawDual, Parameters, Registry};
 pub use depend::Depend;
@@ -285,6 +288,8 @@ laws! {
         Map(Map),
         /// Scalars to scalar.
         Combine(Combine),
+        /// Scalars to scalar, learned from recordings.
+        Correlate(Correlate),
         /// A scalar clamped to bounds that another one sets.
         Depend(Depend),
         /// The orientation of a segment in another.
@@ -376,6 +381,24 @@ impl Law {
         match self.family() {
             Family::Numbers(law) => Some(law),
             Family::Scalars(_) | Family::Limit(_) | Family::Motion(_) => None,
+        }
+    }
+
+    /// The function of several scalars that it is, where it is [`Combine`] or [`Correlate`].
+    pub fn several(&self) -> Option<&condyle_math::function::FunctionOfSeveral> {
+        match self {
+            Self::Combine(law) => Some(&law.function),
+            Self::Correlate(law) => Some(&law.function),
+            _ => None,
+        }
+    }
+
+    /// The same, to be changed in place.
+    pub(crate) fn several_mut(&mut self) -> Option<&mut condyle_math::function::FunctionOfSeveral> {
+        match self {
+            Self::Combine(law) => Some(&mut law.function),
+            Self::Correlate(law) => Some(&mut law.function),
+            _ => None,
         }
     }
 

@@ -160,11 +160,14 @@ pub(super) fn plan(
             Instruction::Limit { limit } => {
                 let call = &code.limits[*limit as usize];
                 // An orientation has three tangents, in its first three registers.
-                let count = if call.orientation { 3 } else { call.inputs.len() };
-                let read = |r: &Number| scalars[r.index()].clone();
-                let inputs: Vec<_> = call.inputs[..count].iter().map(read).collect();
+                let turned = 4 * call.orientations;
+                let moves = |k: usize| k >= turned || k % 4 < 3;
+                let read = |(_, r): (usize, &Number)| scalars[r.index()].clone();
+                let inputs = call.inputs.iter().enumerate().filter(|(k, _)| moves(*k));
+                let inputs: Vec<_> = inputs.map(read).collect();
                 // In open mode the numbers pass unchanged: their derivative, at position 0, is 1.
-                for (input, &output) in inputs.iter().zip(&call.outputs) {
+                let held = if call.orientations > 0 { 3 } else { call.outputs.len() };
+                for (input, &output) in inputs.iter().zip(&call.outputs).take(held) {
                     scalars[output.index()] = plan.scalar(0, std::slice::from_ref(input));
                 }
                 // After it the derivatives of each row.

@@ -23,7 +23,30 @@ pub(super) fn finite<S: Scalar>(x: S) -> S {
 /// Slopes along the tangents of an orientation as slopes along its four stored numbers.
 ///
 /// δ = 2·vec(q*·q̇)/|q|², with q* the conjugate, so s·δ = 2·((w·s - s × v)·v̇ - (s·v)·ẇ)/|q|².
-fn stored_slopes(q: &[f64], [a, b, c, _]: [f64; 4]) -> [f64; 4] {
+fn stored_slopes(
+    numbers: &[f64],
+    slopes: [f64; MOST_LIMITED],
+    orientations: usize,
+) -> [f64; MOST_LIMITED] {
+    let mut stored = [0.0; MOST_LIMITED];
+    let (turns, scalars) = (3 * orientations, 4 * orientations);
+    for (to, from) in stored[scalars..].iter_mut().zip(&slopes[turns..]) {
+        *to = *from;
+    }
+    for ((q, from), to) in numbers
+        .chunks_exact(4)
+        .zip(slopes.chunks_exact(3))
+        .zip(stored.chunks_exact_mut(4))
+        .take(orientations)
+    {
+        to.copy_from_slice(&slopes_of_stored(q, from));
+    }
+    stored
+}
+
+/// Those of one orientation.
+fn slopes_of_stored(q: &[f64], along: &[f64]) -> [f64; 4] {
+    let [a, b, c] = [0, 1, 2].map(|k| along[k]);
     let (v, s) = (Vec3::new(q[0], q[1], q[2]), Vec3::new(a, b, c));
     let square = q.iter().map(|x| x * x).sum::<f64>().max(1e-300);
     let along = (s * q[3] - s.cross(v)) * (2.0 / square);
@@ -239,8 +262,7 @@ impl Program {
             let rows = S::lane_by_lane(numbers, |asked| {
                 let values = &asked.map(Lane::value)[..n];
                 limit.rows_at(values).map(|(value, slopes)| {
-                    let slopes =
-                        if call.orientation { stored_slopes(values, slopes) } else { slopes };
+                    let slopes = stored_slopes(values, slopes, call.orientations);
                     // A row is known by value and slopes: Σ x.chain(0, slope) adds the derivatives
                     // only.
                     let terms = asked[..n].iter().zip(slopes);

@@ -276,8 +276,8 @@ pub(super) struct CombineCall {
 #[derive(Clone, Debug)]
 pub(super) struct LimitCall {
     pub law: Law,
-    /// Whether its numbers are an orientation.
-    pub orientation: bool,
+    /// How many orientations its numbers begin with; what follows are scalars.
+    pub orientations: usize,
     /// Whether its numbers are measured between segments: they are then not moved.
     pub measured: bool,
     pub inputs: Vec<Number>,

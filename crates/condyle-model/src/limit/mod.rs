@@ -26,14 +26,14 @@ pub use cone::{Cone, ConeError, ConePoint, Legal, Projected, Projection};
 pub use field::{Field, LearnedLimit};
 pub use range::Range;
 
-/// The most numbers that one limit bounds together.
-pub const MOST_LIMITED: usize = 4;
+/// The most numbers that one limit reads: an orientation, and another that it depends on.
+pub const MOST_LIMITED: usize = 8;
 
 /// The most rows of one limit.
 pub const MOST_ROWS: usize = 3;
 
 /// A row of a limit: its value, not negative where the numbers are legal, and its slopes along each of
-/// them; of an orientation along its three tangents q ⊕ δ = q·exp(δ).
+/// them; of an orientation along its three tangents q ⊕ δ = q·exp(δ), then those of what it depends on.
 pub type Row = (f64, [f64; MOST_LIMITED]);
 
 /// What every limit gives.
@@ -62,6 +62,15 @@ pub trait Limit: std::fmt::Debug + Send + Sync {
     /// A measure of the distance of these numbers to the nearest ones where [`Limit::legal`] is
     /// discontinuous; infinite if they are legal or there is no such place.
     fn margin(&self, numbers: &[f64]) -> f64;
+}
+
+/// Numbers with zeros behind them.
+pub(crate) fn padded<const N: usize>(numbers: [f64; N]) -> [f64; MOST_LIMITED] {
+    let mut all = [0.0; MOST_LIMITED];
+    for (to, from) in all.iter_mut().zip(numbers) {
+        *to = from;
+    }
+    all
 }
 
 /// A row that does not exist.

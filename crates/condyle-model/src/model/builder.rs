@@ -25,6 +25,13 @@ pub struct ModelBuilder {
     model: Model,
 }
 
+impl From<Model> for ModelBuilder {
+    /// A model to which more is added, or in which something is changed; it is checked again as a whole.
+    fn from(model: Model) -> Self {
+        Self { model: Model { stored_offsets: vec![], tangent_offsets: vec![], ..model } }
+    }
+}
+
 impl ModelBuilder {
     /// An empty model with y up.
     pub fn new(name: &str) -> Self {

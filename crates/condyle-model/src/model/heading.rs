@@ -8,8 +8,8 @@ impl Model {
     /// The model in a world turned about the vertical, so that at rest it looks along `facing`.
     ///
     /// Coordinates mean what they did: each pose is that of the model, turned as a whole. The same model is returned where
-    /// it looks there already, where z is up (a direction along the vertical tells nothing), and where a component
-    /// measures against the axes of the world, whose values would change.
+    /// it looks there already, and where a component measures against the axes of the world, whose values would change.
+    /// Where z is up, directions are turned as [`Facing`] says: one that is to look along +z looks against y.
     ///
     /// ```
     /// use condyle_math::Vec3;
@@ -26,14 +26,16 @@ impl Model {
     #[must_use]
     pub fn looking(&self, facing: Facing) -> Self {
         let mut model = self.clone();
-        if self.facing == facing || self.up == UpAxis::Z || self.measures_the_world() {
+        if self.facing == facing || self.measures_the_world() {
             return model;
         }
-        let angle = |facing: Facing| {
-            let ahead = facing.direction();
-            ahead.x.atan2(ahead.z)
+        let up = match self.up {
+            UpAxis::Y => Vec3::Y,
+            UpAxis::Z => Vec3::Z,
         };
-        let turn = Quat::from_axis_angle(Vec3::Y, angle(facing) - angle(self.facing)).to_mat3();
+        let (from, to) = (self.facing.ahead(self.up), facing.ahead(self.up));
+        let angle = up.dot(from.cross(to)).atan2(from.dot(to));
+        let turn = Quat::from_axis_angle(up, angle).to_mat3();
         let whole = Affine::from_rotation(turn);
         model.facing = facing;
         for segment in model.segments.iter_mut().filter(|segment| segment.parent.is_none()) {

@@ -44,7 +44,9 @@ pub enum UpAxis {
 
 /// The axis of the world along which the character looks at rest.
 ///
-/// It changes no pose: programs that exchange characters turn them by it.
+/// It changes no pose: programs that exchange characters turn them by it. The directions are those of a world in which y is
+/// up. A world in which z is up is that one turned by a quarter about x, so `PlusZ` looks against y there, as
+/// Blender's figures do: [`ahead`](Self::ahead), [`name_in`](Self::name_in).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Facing {
     /// Along the first axis, as in OpenSim.
@@ -83,7 +85,46 @@ impl Facing {
         Self::ALL.into_iter().find(|facing| facing.name() == name)
     }
 
-    /// The direction as a vector of length 1.
+    /// The word for it in a world in which `up` is up: the axis that is meant.
+    pub fn name_in(self, up: UpAxis) -> &'static str {
+        match (up, self) {
+            (UpAxis::Z, Self::PlusZ) => "-y",
+            (UpAxis::Z, Self::MinusZ) => "+y",
+            _ => self.name(),
+        }
+    }
+
+    /// The direction of that name in a world in which `up` is up; where that is z the names of one with y up are known, too.
+    ///
+    /// ```
+    /// use condyle_model::model::{Facing, UpAxis};
+    /// assert_eq!(Facing::named_in("-y", UpAxis::Z), Some(Facing::PlusZ));
+    /// assert_eq!(Facing::named_in("+z", UpAxis::Z), Some(Facing::PlusZ));
+    /// assert_eq!(Facing::named_in("-y", UpAxis::Y), None);
+    /// ```
+    pub fn named_in(name: &str, up: UpAxis) -> Option<Self> {
+        let own = Self::ALL.into_iter().find(|facing| facing.name_in(up) == name);
+        own.or_else(|| Self::named(name))
+    }
+
+    /// The direction in a world in which `up` is up, as a vector of length 1.
+    ///
+    /// ```
+    /// use condyle_math::Vec3;
+    /// use condyle_model::model::{Facing, UpAxis};
+    /// assert_eq!(Facing::MinusX.ahead(UpAxis::Z), -Vec3::X);
+    /// assert_eq!(Facing::PlusZ.ahead(UpAxis::Y), Vec3::Z);
+    /// assert_eq!(Facing::PlusZ.ahead(UpAxis::Z), -Vec3::Y);
+    /// ```
+    pub fn ahead(self, up: UpAxis) -> Vec3 {
+        match (up, self) {
+            (UpAxis::Z, Self::PlusZ) => -Vec3::Y,
+            (UpAxis::Z, Self::MinusZ) => Vec3::Y,
+            _ => self.direction(),
+        }
+    }
+
+    /// The direction in a world in which y is up, as a vector of length 1.
     pub fn direction(self) -> Vec3 {
         match self {
             Self::PlusX => Vec3::X,

@@ -26,7 +26,7 @@
 //! value at rest of a posture term of such distances alone.
 
 use super::{Condition, CoordinateKind, Model, SegmentId};
-use crate::component::{Component, Law, Signal};
+use crate::component::{Component, Correlate, Law, Signal};
 use condyle_diagnostics::{Diagnostic, Subject};
 use condyle_math::function::{FunctionOfSeveral, MultivariatePolynomial};
 use condyle_math::{Affine, Vec3};
@@ -218,12 +218,15 @@ impl Model {
             if let Law::Map(c) = law {
                 let argument = inputs.first().map_or(1.0, |&input| of_input(input));
                 c.functions.iter_mut().for_each(|f| f.stretch(1.0, argument));
-            } else if let Law::Combine(c) = law
-                && let FunctionOfSeveral::Linear { slopes, .. } = &mut c.function
-            {
+                continue;
+            }
+            if let Some(FunctionOfSeveral::Linear { slopes, .. }) = law.several_mut() {
                 for (slope, &input) in slopes.iter_mut().zip(&*inputs) {
                     *slope /= of_input(input);
                 }
+            }
+            if let Law::Correlate(Correlate { region: Some(region), .. }) = law {
+                region.stretch(inputs.iter().map(|&input| of_input(input)));
             }
         }
         let readers = self.count_readers();
@@ -277,7 +280,7 @@ impl Model {
                 let last = c.functions.len() as u32 - 1;
                 Some(Signal::Output(super::ComponentId(index as u32), last))
             }
-            Law::Combine(_) => {
+            Law::Combine(_) | Law::Correlate(_) => {
                 let name = format!("{}_length", component.name);
                 let mut again = Component { name, ..component };
                 grow_output(&mut again.law, output, factor);
@@ -311,18 +314,19 @@ fn grow_output(law: &mut Law, output: u32, factor: f64) {
                 function.stretch(factor, 1.0);
             }
         }
-        Law::Combine(c) if factor != 1.0 => match &mut c.function {
-            FunctionOfSeveral::Linear { slopes, intercept } => {
+        law if factor != 1.0 => match law.several_mut() {
+            Some(FunctionOfSeveral::Linear { slopes, intercept }) => {
                 slopes.iter_mut().for_each(|slope| *slope *= factor);
                 *intercept *= factor;
             }
-            FunctionOfSeveral::Polynomial(p) => {
+            Some(FunctionOfSeveral::Polynomial(p)) => {
                 let all: Vec<f64> = p.coefficients().iter().map(|c| c * factor).collect();
                 let (dimension, order) = (p.dimension(), p.order());
                 if let Ok(larger) = MultivariatePolynomial::up_to_order(dimension, order, &all) {
                     *p = larger;
                 }
             }
+            None => {}
         },
         _ => {}
     }

@@ -7,9 +7,9 @@ use condyle_math::function::{
 };
 use condyle_math::{Affine, EulerOrder, Mat3, Quat, Scalar, Vec3};
 use condyle_model::component::{
-    Along, AngleNames, Angles, Ball, Centre, ConstantCurvature, Contact, ContactPair,
+    Along, AngleNames, Angles, Ball, Centre, ConstantCurvature, Contact, ContactPair, Correlate,
     Curve as Track, Depend, Ellipsoid, Gliding, Heading, JointCone, Law, MotionLaw, Pivot,
-    Reflection, Registry, RelativeOrientation, RelativePosition, Scale, Shear, SurfaceAxis,
+    Reflection, Region, Registry, RelativeOrientation, RelativePosition, Scale, Shear, SurfaceAxis,
     Swinging,
 };
 use condyle_model::component::{Ellipse, HalfSpace};
@@ -401,7 +401,21 @@ fn grow_component(
                 let polynomial = MultivariatePolynomial::up_to_order(2, 2, &c).unwrap();
                 FunctionOfSeveral::Polynomial(polynomial)
             };
-            scalars.push(b.combine(set, &name, inputs, function));
+            if dice.below(2) == 0 {
+                scalars.push(b.combine(set, &name, inputs, function));
+            } else {
+                let [low, high] = [-1.0, 1.0].map(|side| vec![side * (1.0 + dice.within(0.5)); 2]);
+                let inverse = vec![1.0 + dice.within(0.5), 0.1, 0.1, 2.0];
+                let region = Region {
+                    centre: vec![dice.within(0.2), 0.1],
+                    distance: 2.0 + dice.within(1.0),
+                    low,
+                    high,
+                    inverse,
+                };
+                let law = Law::Correlate(Correlate { function, region: Some(region) });
+                scalars.push(b.component(set, &name, law, inputs));
+            }
         }
         2 | 3 => {
             let (angle, axis) = (any(dice), dice.axis());

@@ -248,6 +248,10 @@ impl<'a> Evaluator<'a> {
                 let x: Vec<f64> = component.inputs.iter().map(|&s| self.scalar(s)).collect();
                 combine.function.apply(&x)
             }
+            Law::Correlate(law) => {
+                let x: Vec<f64> = component.inputs.iter().map(|&s| self.scalar(s)).collect();
+                law.function.apply(&x)
+            }
             Law::Cone(_) | Law::Ellipse(_) | Law::HalfSpace(_)
                 if self.mode == Mode::Open || measured(self.model, id) =>
             {

@@ -91,10 +91,7 @@ impl Stance {
         warnings.push(Diagnostic::warning("retarget/rest", message).with_help(help));
         let mut stance = Self::of_pose(figure, posed.at(&motion.frames[frame])?)?;
         let up = up_of(figure.model.up());
-        let mut forward = figure.model.facing().direction();
-        if forward.dot(up).abs() > 0.5 {
-            forward = -Vec3::Y;
-        }
+        let forward = figure.model.facing().ahead(figure.model.up());
         stance.heading = Mat3::from_columns(forward, up, forward.cross(up));
         Ok(stance)
     }

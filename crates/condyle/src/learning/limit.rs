@@ -43,11 +43,11 @@ pub struct LearnedFrom {
 /// A limit must have this many samples that differ, or there is a warning.
 const FEW: usize = 200;
 
-fn raw(takes: &[Take]) -> Vec<&[Quat]> {
+pub(super) fn raw(takes: &[Take]) -> Vec<&[Quat]> {
     takes.iter().map(|take| &take.found.rotations[..]).collect()
 }
 
-fn are_independent(takes: &[&[Quat]]) -> bool {
+pub(super) fn are_independent(takes: &[&[Quat]]) -> bool {
     let all: usize = takes.iter().map(|take| take.len()).sum();
     let of: usize = takes.iter().filter(|take| independent(take)).map(|take| take.len()).sum();
     2 * of > all
@@ -68,6 +68,11 @@ fn gather(takes: &[&[Quat]], how: &How, independent: bool) -> Result<Cloud, Erro
         }
         spacing = if spacing == 0.0 { 0.25 * SPACING } else { 1.5 * spacing };
     }
+}
+
+/// The settings of the field.
+pub(super) fn settings(how: &How) -> Settings {
+    Settings { gap: how.offset, ..how.settings }
 }
 
 /// Learns a limit from takes.
@@ -98,6 +103,7 @@ fn gather(takes: &[&[Quat]], how: &How, independent: bool) -> Result<Cloud, Erro
 ///         child: "forearm".into(),
 ///         reference: Some("humerus".into()),
 ///         frames: String::new(),
+///         given: None,
 ///     })
 ///     .collect();
 /// let found = learn(&takes, &How::default(), "elbow")?;
@@ -111,7 +117,7 @@ pub fn learn(takes: &[Take], how: &How, name: &str) -> Result<LearnedFrom, Error
     let raw = raw(takes);
     let independent = are_independent(&raw);
     let cloud = gather(&raw, how, independent)?;
-    let mut settings = Settings { gap: how.offset, ..how.settings };
+    let mut settings = settings(how);
     let mut said = None;
     if !independent {
         let mut left = left_out(&raw, cloud.spacing(), &settings)?;
@@ -156,7 +162,7 @@ pub fn spheres(
     Ok((learned, warnings))
 }
 
-fn warnings(cloud: &Cloud, takes: &[Take]) -> Vec<Diagnostic> {
+pub(super) fn warnings(cloud: &Cloud, takes: &[Take]) -> Vec<Diagnostic> {
     let mut warnings = cloud.gathered().warnings();
     let count = cloud.rotations().len();
     if count < FEW {

@@ -1,5 +1,6 @@
 //! What a limit of any method says of rotations.
 
+use condyle_learn::limits::dependent::{Dependence, Driver};
 use condyle_learn::limits::herda2003::{LearnedSpheres, judge};
 use condyle_learn::limits::{LearnedLimit, State};
 use condyle_math::Quat;
@@ -29,17 +30,42 @@ pub struct Answered {
 }
 
 impl Limit {
+    /// What it depends on.
+    #[must_use]
+    pub fn dependence(&self) -> Option<&Dependence> {
+        match self {
+            Self::Field(limit) => limit.dependence(),
+            Self::Spheres(_) => None,
+        }
+    }
+
     /// What it says of a rotation, which is brought to length 1; `None` for what is none: not finite, or of length 0.
     ///
     /// q and -q have the same answer.
     #[must_use]
     pub fn answer(&self, q: Quat) -> Option<Answered> {
+        self.answer_given(q, None)
+    }
+
+    /// The same at a value of what the limit depends on, if it depends on anything.
+    #[must_use]
+    pub fn answer_given(&self, q: Quat, driver: Option<Driver>) -> Option<Answered> {
         let length = q.dot(q).sqrt();
         if !(length.is_finite() && length > 1e-9) {
             return None;
         }
         let q = q.normalized();
         match self {
+            Self::Field(limit) if driver.is_some() && limit.dependence().is_some() => {
+                let answer = limit.given()?.answer(q, driver?);
+                Some(Answered {
+                    state: answer.state,
+                    distance: Some(answer.distance),
+                    nearest: Some(answer.nearest),
+                    evidence: answer.evidence,
+                    count: None,
+                })
+            }
             Self::Field(limit) => {
                 let answer = limit.field().answer(q);
                 Some(Answered {

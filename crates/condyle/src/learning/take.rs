@@ -1,5 +1,6 @@
 //! The rotations that one recording shows.
 
+use super::given;
 use crate::open::{self, Cause, OpenError};
 use condyle_diagnostics::{Diagnostic, Error, Place, Read};
 use condyle_formats::{Content, Format, Id, csv};
@@ -22,6 +23,8 @@ pub struct Wanted {
     pub reference: Option<String>,
     /// Whose markers are meant, where the labels of several people begin with their names.
     pub subject: Option<String>,
+    /// What the limit is to depend on.
+    pub given: Option<super::Wished>,
     /// What a marker at 0 0 0 is.
     pub zeros: Zeros,
     /// The unit of angles in motions that do not state it.
@@ -41,6 +44,8 @@ pub struct Take {
     pub reference: Option<String>,
     /// How the axes of both are defined.
     pub frames: String,
+    /// What the limit depends on, at each rotation.
+    pub given: Option<super::Driven>,
 }
 
 fn failed(path: &Path, error: Error) -> OpenError {
@@ -59,7 +64,11 @@ pub fn take(path: &Path, wanted: &Wanted) -> Result<Read<Take>, OpenError> {
     if let Some((title, recipe)) = &wanted.recipe {
         let mut read = open::recording_with(path, wanted.zeros)?;
         let found = recipe.rotations_of(&read.value, wanted.subject.as_deref());
-        let found = found.map_err(|error| failed(path, error))?;
+        let mut found = found.map_err(|error| failed(path, error))?;
+        let given = wanted.given.as_ref().map(|wished| {
+            given::of_markers(wished, &read.value, wanted.subject.as_deref(), &mut found)
+        });
+        let given = given.transpose().map_err(|error| failed(path, error))?;
         read.warnings.extend(found.warnings());
         let value = Take {
             name,
@@ -67,6 +76,7 @@ pub fn take(path: &Path, wanted: &Wanted) -> Result<Read<Take>, OpenError> {
             child: recipe.child.name.clone(),
             reference: recipe.reference.as_ref().map(|frame| frame.name.clone()),
             frames: format!("recipe {title}"),
+            given,
         };
         return Ok(Read { value, warnings: read.warnings });
     }
@@ -126,7 +136,10 @@ fn posed(
     let wrong = |error| failed(path, error);
     let pair = Pair::named(from.model, joint, wanted.reference.as_deref()).map_err(wrong)?;
     let found = rotations::segments(from.model, motion, &[pair]).map_err(wrong)?;
-    let found = found.into_iter().next().unwrap_or_default();
+    let mut found = found.into_iter().next().unwrap_or_default();
+    let given = wanted.given.as_ref();
+    let given = given.map(|wished| given::of_motion(wished, from.model, motion, &mut found));
+    let given = given.transpose().map_err(wrong)?;
     warnings.extend(found.warnings());
     let named = |s| from.model.segment(s).name.clone();
     let value = Take {
@@ -135,6 +148,7 @@ fn posed(
         child: named(pair.child),
         reference: pair.reference.map(named),
         frames: from.frames,
+        given,
     };
     Ok(Read { value, warnings })
 }
@@ -148,7 +162,10 @@ fn of_table(
 ) -> Result<Read<Take>, OpenError> {
     let wrong = |error| failed(path, error);
     if rotations::in_table(table).is_some() {
-        let found = rotations::of_table(table).map_err(wrong)?;
+        let mut found = rotations::of_table(table).map_err(wrong)?;
+        let given = wanted.given.as_ref();
+        let given = given.map(|wished| given::of_table(wished, table, &mut found));
+        let given = given.transpose().map_err(wrong)?;
         // Rotations have no time, and whether their order is one does not matter here.
         let mut warnings: Vec<Diagnostic> =
             warnings.into_iter().filter(|said| said.code != "csv/no-time").collect();
@@ -159,6 +176,7 @@ fn of_table(
             child: wanted.joint.clone().unwrap_or_else(|| "child".to_owned()),
             reference: wanted.reference.clone(),
             frames: "as in the tables of quaternions".to_owned(),
+            given,
         };
         return Ok(Read { value, warnings });
     }
@@ -180,7 +198,10 @@ fn of_table(
         }
     };
     let found = rotations::of_sensors(&sensors.value, &joint, wanted.reference.as_deref());
-    let found = found.map_err(wrong)?;
+    let mut found = found.map_err(wrong)?;
+    let given = wanted.given.as_ref();
+    let given = given.map(|wished| given::of_sensors(wished, &sensors.value, &mut found));
+    let given = given.transpose().map_err(wrong)?;
     let mut warnings: Vec<Diagnostic> =
         warnings.into_iter().filter(|said| said.code != "sto/vector-cells").collect();
     warnings.extend(sensors.warnings);
@@ -191,6 +212,7 @@ fn of_table(
         child: joint,
         reference: wanted.reference.clone(),
         frames: "sensors".to_owned(),
+        given,
     };
     Ok(Read { value, warnings })
 }

@@ -171,9 +171,7 @@ fn turn_of(model: &Model) -> Mat3 {
         UpAxis::Y => Vec3::Y,
         UpAxis::Z => Vec3::Z,
     };
-    let ahead = model.facing().direction();
-    // A direction that is told with y up, in a model whose z is.
-    let ahead = if ahead.dot(up).abs() > 0.5 { -Vec3::Y } else { ahead };
+    let ahead = model.facing().ahead(model.up());
     let left = up.cross(ahead);
     // Its rows are the axes of SMPL in the model.
     Mat3::from_columns(left, up, ahead).transpose()

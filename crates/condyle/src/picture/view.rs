@@ -85,13 +85,9 @@ impl View {
     }
 }
 
-/// Where a model looks at rest. With z up, what looks along z when y is up looks against y.
+/// Where a model looks at rest.
 fn front(model: &Model) -> [f64; 3] {
-    let [x, y, z] = model.facing().direction().to_array();
-    match model.up() {
-        UpAxis::Y => [x, y, z],
-        UpAxis::Z => [x, -z, y],
-    }
+    model.facing().ahead(model.up()).to_array()
 }
 
 /// The direction up in a model's world.

@@ -214,7 +214,7 @@ impl Tree<'_> {
             }
         }
         if ahead.norm() < 1e-3 * self.longest.iter().copied().fold(0.0, f64::max) {
-            ahead = self.model.facing().direction();
+            ahead = self.model.facing().ahead(self.model.up());
         }
         let right = ahead.cross(self.up);
         let at = |which: usize| {

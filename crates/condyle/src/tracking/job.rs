@@ -35,7 +35,7 @@ pub struct Job<'a> {
 }
 
 /// A position that is less sure counts as not seen.
-const LEAST_CONFIDENCE: f64 = 0.05;
+pub(crate) const LEAST_CONFIDENCE: f64 = 0.05;
 
 /// How many chunks are judged before their trust is put together.
 const JUDGED: usize = 1024;

@@ -26,6 +26,7 @@ pub use condyle_track::{
     PostureTarget, Rules, Scratch, Stream, Targets, Tracker, Trust, Wanted,
 };
 pub use job::Job;
+pub(crate) use job::LEAST_CONFIDENCE;
 pub use jump::{Jump, JumpCause};
 pub use live::Live;
 pub use remarks::BeyondRange;

@@ -84,6 +84,8 @@ pub(crate) struct Figure {
     /// The lengths of a figure in centimetres are a hundred times those here.
     pub(crate) mixamo: bool,
     pub(crate) unnamed: bool,
+    /// Whether it lies on its back where all coordinates rest, as figures of some programs do.
+    pub(crate) lying: bool,
     /// How far the toes are in front of the ankle, in metres.
     pub(crate) foot: f64,
 }
@@ -100,6 +102,7 @@ impl Default for Figure {
             odd_axes: false,
             mixamo: false,
             unnamed: false,
+            lying: false,
             foot: 0.14,
         }
     }
@@ -108,9 +111,18 @@ impl Default for Figure {
 impl Figure {
     /// The axes of the body in the world: forward, up, right.
     pub(crate) fn world(&self) -> Mat3 {
-        let (forward, up) = match self.up {
-            UpAxis::Y => (self.facing.direction(), Vec3::Y),
-            UpAxis::Z => (Vec3::X, Vec3::Z),
+        let up = match self.up {
+            UpAxis::Y => Vec3::Y,
+            UpAxis::Z => Vec3::Z,
+        };
+        // With z up `PlusZ` looks against y, `MinusZ` along it.
+        let forward = match (self.up, self.facing) {
+            (_, Facing::PlusX) => Vec3::X,
+            (_, Facing::MinusX) => -Vec3::X,
+            (UpAxis::Y, Facing::PlusZ) => Vec3::Z,
+            (UpAxis::Y, Facing::MinusZ) => -Vec3::Z,
+            (UpAxis::Z, Facing::PlusZ) => -Vec3::Y,
+            (UpAxis::Z, Facing::MinusZ) => Vec3::Y,
         };
         Mat3::from_columns(forward, up, forward.cross(up))
     }
@@ -206,6 +218,11 @@ impl Figure {
                     factors.push(b.translate(set, name, along, axis));
                 }
                 let turn = b.coordinate(set, "turn", CoordinateKind::Orientation);
+                if self.lying {
+                    let back = Vec3::new(0.0, 0.0, FRAC_PI_2);
+                    let back = Quat::exp(own.transpose() * (world * back));
+                    b.coordinate_mut(turn).default = back.to_array();
+                }
                 factors.push(b.ball(set, "turn", turn));
                 let motion = b.product(set, "motion", factors);
                 b.output(set, id, motion);

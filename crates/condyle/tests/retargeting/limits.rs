@@ -141,3 +141,38 @@ fn a_motion_that_comes_back_at_the_other_end_of_a_range_is_followed_there() {
     let [before, outside, after] = compared(&human, &source);
     assert!(before >= 25 && outside >= 5 && after >= 25, "{before} {outside} {after}");
 }
+
+#[test]
+fn an_elbow_that_goes_all_the_way_round_is_followed_where_it_comes_back() {
+    // No elbow does that; a limb that is led frame by frame stops at the end of its range and stays there when
+    // the motion comes in at the other end: what the motion is without limits shows the way.
+    let human = open::model("human".as_ref()).unwrap().value;
+    let mut source = Motion::default();
+    for frame in 0..80 {
+        let mut stored = human.defaults();
+        // Between frames 15 and 55.
+        let share = ((f64::from(frame) - 15.0) / 40.0).clamp(0.0, 1.0);
+        for (name, degrees) in [
+            ("shoulder_elevation_r", 50.0),
+            ("shoulder_plane_r", 40.0),
+            ("shoulder_rotation_r", -10.0),
+            ("elbow_flex_r", 70.0),
+            ("pro_sup_r", 80.0),
+            ("shoulder_elevation_l", 20.0),
+            ("elbow_flex_l", 60.0),
+            ("pro_sup_l", 90.0),
+            ("hip_flexion_l", 20.0),
+            ("hip_flexion_r", 20.0),
+            ("knee_angle_l", 30.0),
+            ("knee_angle_r", 30.0),
+        ] {
+            let id = human.find_coordinate(name).unwrap();
+            let whole = if name == "elbow_flex_r" { 360.0 * share } else { 0.0 };
+            *human.value_mut(&mut stored, id) = f64::to_radians(degrees + whole);
+        }
+        source.times.push(f64::from(frame) / 60.0);
+        source.frames.push(stored);
+    }
+    let [before, outside, after] = compared(&human, &source);
+    assert!(before >= 15 && outside >= 10 && after >= 25, "{before} {outside} {after}");
+}

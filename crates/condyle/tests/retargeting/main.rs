@@ -7,7 +7,7 @@ mod overturned;
 mod walking;
 
 use condyle::formats::document::names;
-use condyle::math::Vec3;
+use condyle::math::{Quat, Vec3};
 use condyle::model::model::Facing;
 use condyle::model::{CoordinateKind, UpAxis};
 use condyle::retargeting::{
@@ -61,7 +61,8 @@ fn limbs_point_where_those_of_the_source_do() {
         Figure { arms: Arms::Hanging, odd_axes: true, ..source },
         Figure { facing: Facing::MinusZ, legs: 0.7, reach: 0.8, thigh: 0.05, ..source },
         Figure { facing: Facing::PlusX, odd_axes: true, mixamo: true, ..source },
-        Figure { up: UpAxis::Z, arms: Arms::A, legs: 1.3, ..source },
+        Figure { up: UpAxis::Z, facing: Facing::PlusX, arms: Arms::A, legs: 1.3, ..source },
+        Figure { up: UpAxis::Z, facing: Facing::MinusZ, odd_axes: true, ..source },
     ];
     let model = source.model();
     let motion = source.motion(&model, 150);
@@ -78,6 +79,75 @@ fn limbs_point_where_those_of_the_source_do() {
         let back = carried(&other, &there, &model, Options::default()).motion;
         let again = limbs_apart((&source, &own), (&source, &places(&model, &back)));
         assert!(again < 1.5, "{target:?}, back: {again} degrees");
+    }
+}
+
+/// All directions of all axes that may be up.
+fn worlds() -> impl Iterator<Item = (UpAxis, Facing)> {
+    let all = |up| Facing::ALL.into_iter().map(move |facing| (up, facing));
+    all(UpAxis::Y).chain(all(UpAxis::Z))
+}
+
+/// The largest distance between two figures' joints, each seen from its own forward, up and right, its first frame's pelvis
+/// above the origin.
+fn joints_apart(a: (&Figure, &[Vec<Vec3>]), b: (&Figure, &[Vec<Vec3>])) -> f64 {
+    let [from, to] = [a.0, b.0].map(|figure| figure.world().transpose());
+    let pairs = a.1.concat().into_iter().zip(b.1.concat());
+    pairs.map(|(p, q)| (from * p - to * q).norm()).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_figure_expressed_in_another_world_gives_and_takes_the_same_motion() {
+    // The same body with the same motion, its world turned so that y or z is up and any axis ahead: what the target does
+    // cannot depend on it, but for the rounding of a search that ends at 1e-6 of what is minimised.
+    let source = Figure::default();
+    let model = source.model();
+    let motion = source.motion(&model, 60);
+    let target = Figure { arms: Arms::A, legs: 0.9, facing: Facing::PlusX, ..source };
+    let other = target.model();
+    let expected = places(&other, &carried(&model, &motion, &other, Options::default()).motion);
+    for (up, facing) in worlds() {
+        let turned = Figure { up, facing, ..source };
+        let turned_model = turned.model();
+        assert_eq!((turned_model.up(), turned_model.facing()), (up, facing));
+        let same = turned.motion(&turned_model, 60);
+        let own = (places(&model, &motion), places(&turned_model, &same));
+        assert!(joints_apart((&source, &own.0), (&turned, &own.1)) < 1e-12);
+        let there = carried(&turned_model, &same, &other, Options::default()).motion;
+        let found = places(&other, &there);
+        let limbs = limbs_apart((&target, &expected), (&target, &found)).to_radians();
+        let joints = joints_apart((&target, &expected), (&target, &found));
+        assert!(limbs < 1e-6 && joints < 1e-6, "from {up:?} {facing:?}: {limbs}, {joints} m");
+        // The other way round it is the target that is turned.
+        let turned = Figure { up, facing, ..target };
+        let turned_model = turned.model();
+        let there = carried(&model, &motion, &turned_model, Options::default()).motion;
+        let found = places(&turned_model, &there);
+        let limbs = limbs_apart((&target, &expected), (&turned, &found)).to_radians();
+        let joints = joints_apart((&target, &expected), (&turned, &found));
+        assert!(limbs < 1e-6 && joints < 1e-6, "onto {up:?} {facing:?}: {limbs}, {joints} m");
+    }
+}
+
+#[test]
+fn a_figure_that_lies_at_rest_looks_where_its_model_says() {
+    // How it stands is taken from its motion, in which it turns: only the model says which way its world is turned.
+    for (up, facing) in worlds() {
+        let source = Figure { up, facing, lying: true, ..Figure::default() };
+        let model = source.model();
+        let mut motion = source.motion(&model, 60);
+        let id = model.find_coordinate("turn").unwrap();
+        for (frame, time) in motion.frames.iter_mut().zip(&motion.times) {
+            let turn = Quat::exp(source.world() * Vec3::new(0.0, 0.5 - time, 0.0));
+            frame[model.stored_range(id)].copy_from_slice(&turn.to_array());
+        }
+        let target = Figure { facing: Facing::PlusX, ..Figure::default() };
+        let other = target.model();
+        let there = carried(&model, &motion, &other, Options::default());
+        assert!(there.warnings.iter().any(|warning| warning.code == "retarget/rest"));
+        let (own, theirs) = (places(&model, &motion), places(&other, &there.motion));
+        let worst = limbs_apart((&source, &own), (&target, &theirs));
+        assert!(worst < 1.0, "{up:?} {facing:?}: {worst} degrees");
     }
 }
 

@@ -77,6 +77,27 @@ fn ranges_end_where_the_text_says() {
     assert_ranges(&Figure::shipped("legs"), &table);
 }
 
+/// With the knee straight the calf holds the ankle: 25 degrees of dorsiflexion, 13 more with the knee bent by 20 and no more
+/// from there on (Baumbach et al. 2014, 20 people); the legs' ends are 12 beyond.
+#[test]
+fn the_ankle_goes_farther_with_a_bent_knee() {
+    let legs = Figure::shipped("legs");
+    let reached = |knee: f64| {
+        let ankle = |angle: f64| {
+            let stored = legs.degrees(&[("knee_angle_r", knee), ("ankle_angle_r", angle)]);
+            let (posed, open) = (legs.pose(&stored, Mode::Posed), legs.open(&stored));
+            let talus = legs.model.find_segment("talus_r").unwrap();
+            apart(posed.segment(talus), open.segment(talus)) < 1e-9
+        };
+        (0..200).map(|n| f64::from(n) / 4.0).filter(|angle| ankle(*angle)).fold(0.0, f64::max)
+            - 12.0
+    };
+    assert!((reached(0.0) - 25.0).abs() < 0.5, "{}", reached(0.0));
+    for knee in [20.0, 75.0] {
+        assert!((reached(knee) - 25.0 - 13.0).abs() < 1.0, "{knee}: {}", reached(knee));
+    }
+}
+
 /// No frame of ordinary motion is refused: what the leg does where people have been recorded, in
 /// degrees.
 #[test]
@@ -90,7 +111,12 @@ fn what_people_do_is_allowed() {
         &[("subtalar_angle_r", -21.0), ("ankle_angle_r", 10.0)],
         &[("hip_flexion_r", 30.0), ("knee_angle_r", 60.0), ("hip_adduction_r", 8.0)],
         // A deep squat on flat feet (Hemmerich et al. 2006, recalled: 95, 157 and 39 at most).
-        &[("hip_flexion_r", 120.0), ("hip_adduction_r", -25.0), ("ankle_angle_r", 39.0)],
+        &[
+            ("hip_flexion_r", 120.0),
+            ("hip_adduction_r", -25.0),
+            ("knee_angle_r", 150.0),
+            ("ankle_angle_r", 39.0),
+        ],
         // Sitting on the heels, toes pointed; and toes tucked under.
         &[("hip_flexion_r", 90.0), ("knee_angle_r", 155.0), ("ankle_angle_r", -60.0)],
         &[("knee_angle_r", 150.0), ("ankle_angle_r", 25.0), ("mtp_angle_r", -85.0)],

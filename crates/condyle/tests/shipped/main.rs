@@ -9,6 +9,7 @@ mod knee;
 mod lanes;
 mod legs;
 mod limb;
+mod limits;
 mod measured;
 mod names;
 mod octopus;

@@ -1,6 +1,6 @@
 //! What `info` says of a learned limit.
 
-use condyle::limits::{Hole, LearnedLimit};
+use condyle::limits::{Ends, Hole, LearnedLimit};
 use condyle::math::Vec3;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -21,6 +21,33 @@ fn extent(limit: &LearnedLimit) -> [[f64; 2]; 3] {
 }
 
 pub(super) fn to_json(limit: &LearnedLimit) -> Value {
+    if let Some(shape) = &limit.ground().shape {
+        let about = limit.about();
+        let ends = |ends: &Ends| {
+            let all = ends.lower().iter().chain(ends.upper()).map(|end| end.to_degrees());
+            json!([
+                all.clone().fold(f64::INFINITY, f64::min),
+                all.fold(f64::NEG_INFINITY, f64::max)
+            ])
+        };
+        return json!({
+            "kind": "limit",
+            "name": about.name,
+            "child": about.child,
+            "reference": about.reference,
+            "source": about.source,
+            "population": about.population,
+            "frames": about.frames,
+            "share": limit.learned().valid,
+            "shape": {
+                "axes": shape.axes().map(|axis| axis.to_array()),
+                "first_deg": shape.first().map(f64::to_degrees),
+                "second_deg": ends(shape.second()),
+                "third_deg": ends(shape.third()),
+                "beyond_deg": shape.beyond().to_degrees(),
+            },
+        });
+    }
     let (about, ground, learned) = (limit.about(), limit.ground(), limit.learned());
     let takes: Vec<Value> = ground
         .takes
@@ -54,13 +81,15 @@ pub(super) fn to_json(limit: &LearnedLimit) -> Value {
         "radius_deg": learned.radius.to_degrees(),
         "gap_deg": learned.gap.to_degrees(),
         "holes": learned.holes.iter().map(hole).collect::<Vec<_>>(),
+        "given": limit.dependence().map(|given| json!({ "name": given.name, "reference": given.reference })),
     })
 }
 
 pub(super) fn to_text(limit: &LearnedLimit) -> String {
     let (about, ground, learned) = (limit.about(), limit.ground(), limit.learned());
     let mut out = format!(
-        "a learned limit{}{}: {} in {}\n",
+        "a {} limit{}{}: {} in {}\n",
+        if ground.shape.is_some() { "published" } else { "learned" },
         if about.name.is_empty() { "" } else { " " },
         about.name,
         about.child,
@@ -71,6 +100,16 @@ pub(super) fn to_text(limit: &LearnedLimit) -> String {
     {
         let said = if said.is_empty() { "not said" } else { said };
         let _ = writeln!(out, "  {what}: {said}");
+    }
+    if let Some(shape) = &ground.shape {
+        let [low, high] = shape.first().map(f64::to_degrees);
+        let _ = writeln!(
+            out,
+            "  three turns, the first by {low:.0} to {high:.0} degrees, the ends of each by those before; {:.0} degrees beyond",
+            shape.beyond().to_degrees()
+        );
+        let _ = writeln!(out, "  valid are {:.2} % of all rotations", 100.0 * learned.valid);
+        return out;
     }
     let _ = writeln!(
         out,
@@ -89,6 +128,14 @@ pub(super) fn to_text(limit: &LearnedLimit) -> String {
         learned.holes.len(),
         100.0 * learned.outer
     );
+    if let Some(given) = limit.dependence() {
+        let within = given.reference.as_ref().map_or(String::new(), |r| format!(" in {r}"));
+        let _ = writeln!(
+            out,
+            "  depends on {}{within}: boundaries move by at most {} per unit of it",
+            given.name, given.settings.slope
+        );
+    }
     for (axis, [least, most]) in ["x", "y", "z"].into_iter().zip(extent(limit)) {
         let _ = writeln!(
             out,

@@ -81,7 +81,7 @@ pub(super) fn to_json(model: &Model) -> Value {
         "kind": "model",
         "name": model.name(),
         "up": up(model),
-        "facing": model.facing().name(),
+        "facing": model.facing().name_in(model.up()),
         "segments": segments,
         "joint_sets": model.joint_sets().iter().map(|set| &set.name).collect::<Vec<_>>(),
         "coordinates": coordinates,
@@ -171,7 +171,7 @@ pub(super) fn to_text(model: &Model) -> String {
         up(model),
         match model.facing() {
             Facing::PlusX => String::new(),
-            other => format!(", facing {}", other.name()),
+            other => format!(", facing {}", other.name_in(model.up())),
         },
         model.segments().len(),
         model.joint_sets().len(),

@@ -184,8 +184,12 @@ pub(super) fn limit_rows(model: &Model) -> Vec<Vec<String>> {
                     true => String::new(),
                     false => format!("; {}", about.source),
                 };
-                let samples = field.limit.ground().samples.len();
-                (names(&component.inputs), format!("{samples} samples{share}{source}"))
+                let ground = field.limit.ground();
+                let from = match &ground.shape {
+                    Some(_) => "three turns".to_owned(),
+                    None => format!("{} samples", ground.samples.len()),
+                };
+                (names(&component.inputs), format!("{from}{share}{source}"))
             }
             Law::Contact(Contact { most_gap, law, .. }) => {
                 let radii = law.radii().to_array().map(length);

@@ -1,6 +1,7 @@
 //! `condyle limits report`: the mobility of a joint, and two compared.
 
 use super::Outcome;
+use crate::commands::learn::{bins_json, bins_text};
 use crate::failure::{Failure, warned};
 use crate::output;
 use clap::{Args, ValueEnum};
@@ -86,7 +87,8 @@ impl Report {
         if self.json {
             output::print_json(&json(&limit, other.as_deref(), &numbers, versus.as_ref()))?;
         } else {
-            let text = self.text(&limit, &numbers, versus.as_ref());
+            let mut text = self.text(&limit, &numbers, versus.as_ref());
+            text.push_str(&bins_text(&limit));
             output::print(text.as_bytes())?;
         }
         Ok(Outcome::Done)
@@ -94,12 +96,16 @@ impl Report {
 
     fn text(&self, limit: &LearnedLimit, numbers: &Numbers, versus: Option<&Versus>) -> String {
         let about = limit.about();
+        let ground = limit.ground();
+        let from = match &ground.shape {
+            Some(_) => "by formulas".to_owned(),
+            None => format!("{} samples", ground.samples.len()),
+        };
         let mut text = format!(
-            "{}: {} in {}, {} samples\n",
+            "{}: {} in {}, {from}\n",
             self.limit.display(),
             about.child,
             about.reference.as_deref().unwrap_or("the laboratory"),
-            limit.ground().samples.len()
         );
         let bounds = numbers.interval.map_or(String::new(), |interval| {
             format!(
@@ -288,6 +294,7 @@ fn json(
         "systems": numbers.systems.iter().map(system).collect::<Vec<_>>(),
         "thin_from_deg": numbers.thin_from.to_degrees(),
         "regions": regions,
+        "given": bins_json(limit),
         "compared": versus.zip(other).map(|(versus, other)| compared(versus, other)),
     })
 }

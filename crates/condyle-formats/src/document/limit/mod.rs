@@ -20,6 +20,13 @@
 //! [learned]
 //! spacing, radius, gap        = what was found: with these and `axes` the field is made again as it was
 //! extreme, surface, outer, valid, holes
+//! [shape]      = instead of all these: formulas, see `shape.rs`
+//! [given]      = where the limit depends on another joint
+//! name, reference             = the coordinate, or the segment whose rotation it is and the one in which it is seen
+//! values       = the driver at each sample, radians or metres: base64 of an f32 each, little endian, or a list
+//! packed       = of a rotation as of the samples; or a list `rotations`
+//! slope, step, nodes, few, layer = how it is learned (condyle_model::limit::field::dependent::DependenceSettings)
+//! radius, gap  = what was found
 //! ```
 //!
 //! A rotation is a unit quaternion x, y, z, w of the child's axes in the reference's; q and -q are one rotation. Whatever
@@ -28,6 +35,8 @@
 //! The field is no part of the file: it is made when it is first asked for, and answers as the one that was
 //! learned.
 
+mod given;
+mod shape;
 mod spheres;
 mod write;
 
@@ -48,8 +57,18 @@ use condyle_model::limit::field::{Chart, snapped, unpacked};
 use std::sync::Arc;
 
 /// The tables and keys of a limit.
-pub(super) const KEYS: &[&str] =
-    &["child", "reference", "source", "population", "frames", "samples", "learning", "learned"];
+pub(super) const KEYS: &[&str] = &[
+    "child",
+    "reference",
+    "source",
+    "population",
+    "frames",
+    "samples",
+    "learning",
+    "learned",
+    "given",
+    "shape",
+];
 
 const FORM: Form = Form { kind: Kind::Limit, keys: KEYS, own: &[], repeated: &[] };
 
@@ -107,6 +126,11 @@ struct Samples {
     chart: Option<Chart>,
 }
 
+/// The name of a key in messages.
+fn below(top: &Fields<'_>, key: &str) -> String {
+    if top.label.is_empty() { key.to_owned() } else { format!("{}.{key}", top.label) }
+}
+
 impl Reader<'_> {
     /// What people want to know of a limit, but for the names of its takes.
     fn about(&mut self, top: &Fields<'_>, name: String) -> Option<About> {
@@ -126,6 +150,17 @@ impl Reader<'_> {
     /// The limit whose keys are in a table.
     pub(super) fn limit(&mut self, top: &Fields<'_>, name: String) -> Option<LearnedLimit> {
         let about = self.about(top, name);
+        if let Some(node) = top.get("shape") {
+            for key in ["samples", "learning", "learned"] {
+                if top.get(key).is_some() {
+                    self.exclusive(node, "shape", key);
+                    return None;
+                }
+            }
+            let label = below(top, "shape");
+            let ground = self.shape(node, label)?;
+            return Some(LearnedLimit::new(about?, Arc::new(ground), None, field::made));
+        }
         let learning = ["method", "nodes", "radii", "layer", "hole"];
         let settings = match self.table_of(top, "learning", &learning) {
             Some(fields) => self.settings(&fields),
@@ -137,33 +172,48 @@ impl Reader<'_> {
             None => None,
         };
         if top.get("samples").is_none() {
-            self.missing(top, "samples", "a table with the rotations, `packed` or `rotations`");
+            let wanted =
+                "a table with the rotations, `packed` or `rotations`, or one of formulas, `shape`";
+            self.missing(top, "samples", wanted);
         }
         let keys = ["packed", "rotations", "takes", "names", "thinned", "axes"];
         let samples = self.table_of(top, "samples", &keys)?;
         let Samples { rotations, takes, names, thinned, chart } = self.samples(&samples)?;
+        let given = match top.get("given") {
+            Some(_) => Some(self.given(top, rotations.len())?),
+            None => None,
+        };
         let (known, learned) = learned.unzip();
         let about = About { takes: names, ..about? };
         let settings = settings?;
         let ground = match chart {
             Some(chart) => {
                 let known = known.flatten();
-                Ground { samples: rotations, takes, thinned, chart, settings, known }
+                let samples = rotations;
+                Ground { samples, takes, thinned, chart, settings, known, shape: None }
             }
             None => {
                 let cloud = Cloud::gather(&[&rotations], 0.0).ok()?;
                 let ground = field::ground(&cloud, &settings).ok()?;
+                // Each sample has its driver: then none is left out.
+                let ground = match given {
+                    Some(_) => Ground { samples: rotations, ..ground },
+                    None => ground,
+                };
                 Ground { thinned, takes: vec![ground.samples.len() as u32], ..ground }
             }
         };
-        Some(LearnedLimit::new(about, Arc::new(ground), learned.flatten(), field::made))
+        let limit = LearnedLimit::new(about, Arc::new(ground), learned.flatten(), field::made);
+        Some(match given {
+            Some(given) => limit.depending_on(given, field::dependent::made),
+            None => limit,
+        })
     }
 
     /// A table below another, if it is there.
     fn table_of<'t>(&mut self, top: &Fields<'t>, key: &str, known: &[&str]) -> Option<Fields<'t>> {
         let node = top.get(key)?;
-        let label =
-            if top.label.is_empty() { key.to_owned() } else { format!("{}.{key}", top.label) };
+        let label = below(top, key);
         Some(self.table(node, node.spot, label, known))
     }
 
@@ -171,12 +221,7 @@ impl Reader<'_> {
         self.word(fields, "method", &[("closing", ())])?;
         let mut settings = Settings::default();
         if let Some(node) = fields.get("nodes") {
-            settings.nodes = self.count(node, "nodes")?;
-            if !(24..=256).contains(&settings.nodes) {
-                let message = format!("`nodes` is {}", settings.nodes);
-                self.texts.error(node.spot, "limit/settings", message, "give 24 to 256");
-                return None;
-            }
+            settings.nodes = self.nodes(node)?;
         }
         if let Some(node) = fields.get("radii") {
             let unit = self.angle_unit(node.spot);

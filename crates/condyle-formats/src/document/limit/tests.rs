@@ -165,3 +165,54 @@ fn faults_are_placed() {
         assert!(error.contains(said), "{text}: {error}");
     }
 }
+
+const TURNS: &str = r#"
+condyle = 1
+kind = "limit"
+angles = "deg"
+child = "humerus_r"
+source = "drawn by hand"
+[shape]
+axes = [[-1, 0, 0], [0, 0, 1], [0, -1, 0]]
+first = [-9, 160]
+second = { first = [0, 180], lower = [-43, 17], upper = [153, 123] }
+third = { first = [0, 90], second = [0, 90], lower = [[-90, -100], [-20, -10]], upper = [[60, 10], [100, 100]] }
+beyond = 5
+"#;
+
+#[test]
+fn formulas_are_read_and_written() {
+    let limit = again(TURNS);
+    let shape = limit.ground().shape.as_deref().unwrap();
+    // -90 + 7 a/9 - f/9 + 2 a f/810 at a = 45 and f = 45: -55 exactly; 60 + 4 a/9 - 5 f/9 + 5 a f/810: 67.5.
+    let ends = shape.third().at(45f64.to_radians(), 45f64.to_radians()).map(f64::to_degrees);
+    assert!((ends[0] + 55.0).abs() < 1e-12 && (ends[1] - 67.5).abs() < 1e-12, "{ends:?}");
+    let written = write(&limit);
+    let twice = again(&written);
+    let near = |one: &[f64], two: &[f64]| one.iter().zip(two).all(|(a, b)| (a - b).abs() < 1e-12);
+    let other = twice.ground().shape.as_deref().unwrap();
+    assert!(near(shape.third().lower(), other.third().lower()));
+    assert!(near(shape.second().upper(), other.second().upper()));
+    assert_eq!(other.axes(), shape.axes());
+    assert!((other.beyond().to_degrees() - 5.0).abs() < 1e-12);
+    assert_eq!(write(&twice), written);
+    assert_eq!(twice.about(), limit.about());
+}
+
+#[test]
+fn formulas_that_are_none_are_refused() {
+    for (from, to, said) in [
+        ("first = [-9, 160]", "first = [160, -9]", "limit/shape"),
+        ("[0, 0, 1]", "[1, 0, 1]", "limit/shape"),
+        ("upper = [[60, 10], [100, 100]]", "upper = [[60, 10], [100]]", "document/length"),
+        ("upper = [[60, 10], [100, 100]]", "upper = [60, 10, 100]", "limit/shape"),
+        ("beyond = 5", "beyond = 500", "limit/shape"),
+        ("beyond = 5", "nodes = 3", "limit/settings"),
+        ("beyond = 5", "samples = {}", "document/unknown-key"),
+        ("[shape]", "[samples]\nrotations = [[0, 0, 0, 1]]\n[shape]", "document/exclusive"),
+    ] {
+        assert!(TURNS.contains(from), "{from}");
+        let error = read(&TURNS.replace(from, to), &mut alone).unwrap_err();
+        assert!(error.iter().any(|e| e.code == said), "{said}: {error}");
+    }
+}

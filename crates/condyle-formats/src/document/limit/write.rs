@@ -1,6 +1,7 @@
 //! Writes a learned limit: the samples in base64, and all numbers with which the same field is made again.
 
 use super::super::model::{number, numbers, text};
+use super::given::given;
 use crate::text::base64;
 use condyle_learn::limits::LearnedLimit;
 use condyle_learn::limits::field::{Ground, Learned};
@@ -40,7 +41,10 @@ fn keys(out: &mut String, limit: &LearnedLimit, within: &str) {
     line("population", &about.population);
     line("frames", &about.frames);
     let ground = limit.ground();
-    let Ground { samples, takes, thinned, chart, settings, known } = &**ground;
+    let Ground { samples, takes, thinned, chart, settings, known, shape } = &**ground;
+    if let Some(shape) = shape {
+        return super::shape::write_shape(out, shape, settings.nodes, within);
+    }
     let _ = writeln!(out, "\n[{within}learning]");
     let _ = writeln!(out, "method = \"closing\"");
     let _ = writeln!(out, "nodes = {}", settings.nodes);
@@ -78,6 +82,9 @@ fn keys(out: &mut String, limit: &LearnedLimit, within: &str) {
             out.push_str("]\n");
         }
     }
+    if let Some(dependence) = limit.dependence() {
+        given(out, dependence, within);
+    }
     let _ = writeln!(out, "\n[{within}samples]");
     let counts: Vec<f64> = takes.iter().map(|count| f64::from(*count)).collect();
     let _ = writeln!(out, "takes = {}", numbers(&counts));
@@ -95,9 +102,14 @@ fn keys(out: &mut String, limit: &LearnedLimit, within: &str) {
 pub(super) fn packed_samples(out: &mut String, samples: &[condyle_math::Quat]) {
     let bytes: Vec<u8> =
         samples.iter().flat_map(|q| packed(*q)).flat_map(u16::to_le_bytes).collect();
-    let letters = base64::encode(&bytes);
     let _ = writeln!(out, "# {} rotations: three u16 each, within 0.01 degrees", samples.len());
-    out.push_str("packed = \"\"\"\n");
+    letters(out, "packed", &bytes);
+}
+
+/// Bytes in base64 under a key.
+pub(super) fn letters(out: &mut String, key: &str, bytes: &[u8]) {
+    let letters = base64::encode(bytes);
+    let _ = writeln!(out, "{key} = \"\"\"");
     for row in letters.as_bytes().chunks(WIDTH) {
         out.push_str(std::str::from_utf8(row).unwrap_or_default());
         out.push('\n');

@@ -36,7 +36,7 @@ mod write;
 
 pub use keys::keys;
 pub use write::write;
-pub(super) use write::{number, numbers, text};
+pub(super) use write::{function, number, numbers, several_of, text};
 
 use self::read::ModelReader;
 use super::{Form, Kind, read_kind};

@@ -256,14 +256,14 @@ impl Resolver<'_> {
     /// Connects the names at the ports of a component.
     fn connect(&mut self, id: ComponentId, set: &str, name: &Name, names: &[Name]) {
         let law = &self.builder.component_mut(id).law;
-        if let Law::Combine(c) = law
-            && c.function.arity() != names.len()
+        if let Some(function) = law.several()
+            && function.arity() != names.len()
         {
             let message = format!(
                 "component `{}` has {} inputs but its function takes {}",
                 name.text,
                 names.len(),
-                c.function.arity()
+                function.arity()
             );
             let help = "give as many inputs as the function has arguments";
             self.texts.error(name.spot, "model/arity", message, help);

@@ -3,16 +3,21 @@
 use super::value::At;
 use crate::Error;
 use crate::exchange::AXES;
+use condyle_learn::limits::dependent::{
+    self, Dependence, DependenceKnown, DependenceSettings, Drivers,
+};
 use condyle_learn::limits::field::made;
 use condyle_math::{EulerOrder, Quat, Vec3};
 use condyle_model::Law;
 use condyle_model::component::{
     Along, AngleNames, Angles, Ball, Centre, Combine, Compensate, ConstantCurvature, Contact,
-    ContactPair, Curve, Depend, Ellipse, Ellipsoid, FieldLimit, Gliding, HalfSpace, Heading,
-    JointCone, Map, Parameters, Pivot, Place, Product, Reflection, Registry, RelativeOrientation,
-    RelativePosition, Rotate, Scale, Shear, SurfaceAxis, Swinging, Translate,
+    ContactPair, Correlate, Curve, Depend, Ellipse, Ellipsoid, FieldLimit, Gliding, HalfSpace,
+    Heading, JointCone, Map, Parameters, Pivot, Place, Product, Reflection, Region, Registry,
+    RelativeOrientation, RelativePosition, Rotate, Scale, Shear, SurfaceAxis, Swinging, Translate,
 };
-use condyle_model::limit::field::{About, Chart, Ground, Known, LearnedLimit, Settings, snapped};
+use condyle_model::limit::field::{
+    About, Chart, Ends, Ground, Known, LearnedLimit, Settings, Shape, ShapeError, snapped,
+};
 use condyle_model::limit::{Cone, ConePoint, Projection};
 use std::sync::Arc;
 
@@ -28,6 +33,10 @@ pub(super) fn law(at: &At<'_>, laws: &Registry) -> Result<Law, Error> {
             })
         }
         "combine" => Law::Combine(Combine { function: p.key("function")?.function_of_several()? }),
+        "correlate" => Law::Correlate(Correlate {
+            function: p.key("function")?.function_of_several()?,
+            region: p.perhaps("region").map(|region| region_of(&region)).transpose()?,
+        }),
         "depend" => {
             let [lower, upper] = sides;
             Law::Depend(Depend { lower: lower?, upper: upper? })
@@ -163,6 +172,24 @@ fn cone(p: &At<'_>) -> Result<Law, Error> {
     Ok(Law::Cone(JointCone { of, cone }))
 }
 
+/// Three turns whose ends depend on those before.
+fn shape(p: &At<'_>) -> Result<Shape, Error> {
+    let wrong = |at: &At<'_>, error: ShapeError| at.error(error.message, error.help);
+    let ends = |key: &str| -> Result<Ends, Error> {
+        let at = p.key(key)?;
+        let [first, second, lower, upper] =
+            ["first", "second", "lower", "upper"].map(|key| at.key(key)?.numbers());
+        Ends::new(first?, second?, lower?, upper?).map_err(|error| wrong(&at, error))
+    };
+    let axes = p.key("axes")?;
+    let Ok(three) = <[Vec3; 3]>::try_from(axes.vectors()?) else {
+        return Err(axes.error("these are not three directions", "give the axes of three turns"));
+    };
+    let (first, beyond) = (p.key("first")?.some()?, p.key("beyond")?.number()?);
+    let shape = Shape::new(three, first, ends("second")?, ends("third")?, beyond);
+    shape.map_err(|error| wrong(p, error))
+}
+
 fn field(p: &At<'_>) -> Result<Law, Error> {
     let quaternion = |at: &At<'_>| -> Result<Quat, Error> {
         let q = Quat::from(at.some::<4>()?);
@@ -193,7 +220,8 @@ fn field(p: &At<'_>) -> Result<Law, Error> {
     let given = p.key("takes")?;
     let takes = given.list()?.iter().map(At::count).collect::<Result<Vec<_>, _>>()?;
     let sum: usize = takes.iter().map(|count| *count as usize).sum();
-    if samples.is_empty() || sum != samples.len() {
+    let shape = p.perhaps("shape").map(|at| shape(&at)).transpose()?;
+    if shape.is_none() && samples.is_empty() || sum != samples.len() {
         let message = format!("{sum} rotations of takes, but {} are there", samples.len());
         return Err(given.error(message, "give the number of rotations of each take, at least one"));
     }
@@ -229,18 +257,75 @@ fn field(p: &At<'_>) -> Result<Law, Error> {
     let [left, right] = p.key("axes")?.two()?;
     let chart = Chart::of_sides([quaternion(&left)?, quaternion(&right)?]);
     let thinned = p.key("thinned")?.number()?;
-    let ground = Ground { samples, takes, thinned, chart, settings, known };
+    let shape = shape.map(Arc::new);
+    let ground = Ground { samples, takes, thinned, chart, settings, known, shape };
     let mirrored = match p.perhaps("mirrored") {
         Some(at) => Reflection::new(axis(&at)?),
         None => None,
     };
+    let count = ground.samples.len();
+    let limit = LearnedLimit::new(about, Arc::new(ground), None, made);
+    let limit = match p.perhaps("given") {
+        Some(at) => limit.depending_on(depending(&at, count)?, dependent::made),
+        None => limit,
+    };
+    let axes = |key: &str| p.perhaps(key).map_or(Ok(Quat::IDENTITY), |at| quaternion(&at));
     Ok(Law::Field(FieldLimit {
-        limit: Arc::new(LearnedLimit::new(about, Arc::new(ground), None, made)),
+        limit: Arc::new(limit),
+        driver_in_reference: axes("driver_in_reference")?,
+        driver_in_segment: axes("driver_in_segment")?,
         in_reference: quaternion(&p.key("in_reference")?)?,
         in_segment: quaternion(&p.key("in_segment")?)?,
         mirrored,
         strict: p.key("strict")?.flag()?,
     }))
+}
+
+/// What a limit with so many samples depends on.
+fn depending(p: &At<'_>, samples: usize) -> Result<Dependence, Error> {
+    let drivers = match (p.perhaps("values"), p.perhaps("rotations")) {
+        (Some(at), None) => {
+            let values = at.list()?.iter().map(At::number).collect::<Result<Vec<_>, Error>>()?;
+            Drivers::Scalars(values)
+        }
+        (None, Some(at)) => {
+            let one = |q: &At<'_>| Ok(snapped(Quat::from(q.some::<4>()?)));
+            Drivers::Rotations(at.list()?.iter().map(one).collect::<Result<Vec<_>, Error>>()?)
+        }
+        _ => return Err(p.error("it has no driver", "give one of `values` and `rotations`")),
+    };
+    if drivers.len() != samples {
+        let message = format!("{} values of the driver for {samples} samples", drivers.len());
+        return Err(p.error(message, "give the driver at each sample"));
+    }
+    let nodes = p.key("nodes")?;
+    let settings = DependenceSettings {
+        slope: p.key("slope")?.number()?,
+        step: p.key("step")?.number()?,
+        nodes: nodes.count()? as usize,
+        few: p.key("few")?.count()?,
+        gap: p.perhaps("layer").map(|at| at.number()).transpose()?,
+    };
+    if !((24..=128).contains(&settings.nodes) && settings.slope >= 0.0 && settings.step > 0.0) {
+        return Err(nodes
+            .error("there are not 24 to 128 nodes, or slope or step are below 0", "correct them"));
+    }
+    let known = match p.perhaps("known") {
+        None => None,
+        Some(at) => {
+            let (radius, gap) = (at.key("radius")?.number()?, at.key("gap")?.number()?);
+            let turn = std::f64::consts::PI;
+            if !(radius > 0.0 && radius < turn && (0.0..turn).contains(&gap)) {
+                return Err(
+                    at.error("these are no angles between 0 and half a turn", "correct them")
+                );
+            }
+            Some(DependenceKnown { radius, gap })
+        }
+    };
+    let reference = p.perhaps("reference").map(|at| at.text().map(str::to_owned)).transpose()?;
+    let name = p.key("name")?.text()?.to_owned();
+    Ok(Dependence { name, reference, drivers, settings, known })
 }
 
 fn contact(p: &At<'_>, inputs: &At<'_>) -> Result<Law, Error> {
@@ -278,4 +363,15 @@ fn pivot(p: &At<'_>) -> Result<Law, Error> {
     };
     let pivot = Pivot::new(p.key("axis")?.vector()?, centre);
     Ok(Law::Pivot(pivot.map_err(|error| p.error(error, "correct it"))?))
+}
+
+/// Whether it fits the function is checked when the model is built.
+fn region_of(p: &At<'_>) -> Result<Region, Error> {
+    Ok(Region {
+        low: p.key("low")?.numbers()?,
+        high: p.key("high")?.numbers()?,
+        centre: p.key("centre")?.numbers()?,
+        inverse: p.key("inverse")?.numbers()?,
+        distance: p.key("distance")?.number()?,
+    })
 }

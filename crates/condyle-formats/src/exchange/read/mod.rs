@@ -91,11 +91,16 @@ impl<'l> Reader<'l> {
     }
 
     fn all(&mut self, top: &At<'_>) -> Result<(), Error> {
+        let mut axis = UpAxis::Y;
         if let Some(up) = top.perhaps("up") {
-            self.builder.up(up.word(&[("y", UpAxis::Y), ("z", UpAxis::Z)])?);
+            axis = up.word(&[("y", UpAxis::Y), ("z", UpAxis::Z)])?;
+            self.builder.up(axis);
         }
         if let Some(facing) = top.perhaps("facing") {
-            self.builder.facing(facing.word(&Facing::ALL.map(|f| (f.name(), f)))?);
+            let own = Facing::ALL.map(|f| (f.name_in(axis), f));
+            // Those of a world with y up are known, too.
+            let other = Facing::ALL.map(|f| (f.name(), f));
+            self.builder.facing(facing.word(&[own, other].concat())?);
         }
         let segments = top.all("segments")?;
         for at in &segments {

@@ -7,11 +7,14 @@ use condyle_math::function::SimmSpline;
 use condyle_model::Law;
 use condyle_model::component::{
     Along, AngleNames, Angles, Ball, Centre, Combine, Compensate, ConstantCurvature, Contact,
-    ContactPair, Curve, Depend, Ellipsoid, FieldLimit, Gliding, Heading, JointCone, Map, Place,
-    Product, RelativeOrientation, RelativePosition, Rotate, Scale, Shear, SurfaceAxis, Swinging,
-    Translate,
+    ContactPair, Correlate, Curve, Depend, Ellipsoid, FieldLimit, Gliding, Heading, JointCone, Map,
+    Place, Product, Region, RelativeOrientation, RelativePosition, Rotate, Scale, Shear,
+    SurfaceAxis, Swinging, Translate,
 };
-use condyle_model::limit::field::{About, Ground, Known, Settings};
+use condyle_model::limit::field::dependent::{
+    Dependence, DependenceKnown, DependenceSettings, Drivers,
+};
+use condyle_model::limit::field::{About, Ends, Ground, Known, Settings, Shape};
 use condyle_model::limit::{ConePoint, Projection};
 use serde_json::{Value, json};
 
@@ -22,6 +25,19 @@ pub(super) fn parameters(law: &Law) -> Value {
             json!({ "functions": functions.iter().map(function).collect::<Value>() })
         }
         Law::Combine(Combine { function }) => json!({ "function": function_of_several(function) }),
+        Law::Correlate(Correlate { function, region }) => {
+            let region = region.as_ref().map(|region| {
+                let Region { low, high, centre, inverse, distance } = region;
+                json!({
+                    "low": low,
+                    "high": high,
+                    "centre": centre,
+                    "inverse": inverse,
+                    "distance": distance,
+                })
+            });
+            json!({ "function": function_of_several(function), "region": region })
+        }
         Law::Depend(Depend { lower, upper }) => {
             json!({ "lower": lower.as_ref().map(function), "upper": upper.as_ref().map(function) })
         }
@@ -129,15 +145,50 @@ fn cone(JointCone { of, cone }: &JointCone) -> Value {
 }
 
 /// A learned limit: axes, and all that it was learned from.
-fn field(FieldLimit { limit, in_reference, in_segment, mirrored, strict }: &FieldLimit) -> Value {
+/// What a limit depends on.
+fn given(dependence: &Dependence) -> Value {
+    let Dependence { name, reference, drivers, settings, known } = dependence;
+    let DependenceSettings { slope, step, nodes, few, gap } = settings;
+    let (values, rotations) = match drivers {
+        Drivers::Scalars(values) => (Some(json!(values)), None),
+        Drivers::Rotations(all) => {
+            (None, Some(all.iter().map(|q| json!(q.to_array())).collect::<Value>()))
+        }
+    };
+    let known =
+        known.map(|DependenceKnown { radius, gap }| json!({ "radius": radius, "gap": gap }));
+    json!({
+        "name": name,
+        "reference": reference,
+        "values": values,
+        "rotations": rotations,
+        "slope": slope,
+        "step": step,
+        "nodes": nodes,
+        "few": few,
+        "layer": gap,
+        "known": known,
+    })
+}
+
+fn field(law: &FieldLimit) -> Value {
+    let FieldLimit {
+        limit,
+        in_reference,
+        in_segment,
+        driver_in_reference,
+        driver_in_segment,
+        mirrored,
+        strict,
+    } = law;
     let About { name, child, reference, source, population, frames, takes: names } = limit.about();
-    let Ground { samples, takes, thinned, chart, settings, known } = &**limit.ground();
+    let Ground { samples, takes, thinned, chart, settings, known, shape } = &**limit.ground();
     let Settings { nodes, radius, gap, hole } = settings;
     let known = known.map(
         |Known { spacing, radius, gap }| json!({ "spacing": spacing, "radius": radius, "gap": gap }),
     );
     let rotations: Value = samples.iter().map(|q| json!(q.to_array())).collect();
-    json!({
+    let mut written = json!({
         "in_reference": in_reference.to_array(),
         "in_segment": in_segment.to_array(),
         "mirrored": mirrored.map(|at| AXES[at.axis() % 3]),
@@ -158,6 +209,37 @@ fn field(FieldLimit { limit, in_reference, in_segment, mirrored, strict }: &Fiel
         "hole": hole,
         "known": known,
         "rotations": rotations,
+    });
+    if let Some(keys) = written.as_object_mut() {
+        if let Some(shape) = shape {
+            keys.insert("shape".to_owned(), shape_of(shape));
+        }
+        // Limits that depend on nothing are written as they were before there were others.
+        if let Some(dependence) = limit.dependence() {
+            keys.insert("given".to_owned(), given(dependence));
+            keys.insert("driver_in_reference".to_owned(), json!(driver_in_reference.to_array()));
+            keys.insert("driver_in_segment".to_owned(), json!(driver_in_segment.to_array()));
+        }
+    }
+    written
+}
+
+/// Three turns whose ends depend on those before.
+fn shape_of(shape: &Shape) -> Value {
+    let ends = |ends: &Ends| {
+        json!({
+            "first": ends.first(),
+            "second": ends.second(),
+            "lower": ends.lower(),
+            "upper": ends.upper(),
+        })
+    };
+    json!({
+        "axes": vectors(&shape.axes()),
+        "first": shape.first(),
+        "second": ends(shape.second()),
+        "third": ends(shape.third()),
+        "beyond": shape.beyond(),
     })
 }
 

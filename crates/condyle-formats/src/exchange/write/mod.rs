@@ -47,7 +47,7 @@ pub fn write(model: &Model) -> String {
     let mut text = format!(
         "{{\n\"{HEAD}\": {VERSION},\n\"name\": {},\n\"up\": \"{up}\",\n\"facing\": \"{}\"",
         json!(model.name()),
-        model.facing().name(),
+        model.facing().name_in(model.up()),
     );
     let mut list = |key: &str, parts: Vec<Value>| {
         let lines: Vec<String> = parts.iter().map(|part| format!("\n{part}")).collect();

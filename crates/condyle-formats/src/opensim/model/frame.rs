@@ -50,13 +50,14 @@ impl Parts {
 }
 
 /// The names under which a station or a marker states its frame.
-const POINT_FRAME: &[&str] = &["parent_frame", "reference_frame", "body"];
+pub(in crate::opensim) const POINT_FRAME: &[&str] = &["parent_frame", "reference_frame", "body"];
 
 /// Every frame and station of a model file.
-pub(super) struct Frames<'d> {
+pub(in crate::opensim) struct Frames<'d> {
     items: Vec<Item<'d>>,
     by_path: HashMap<String, usize>,
     by_name: HashMap<&'d str, Vec<usize>>,
+    by_element: HashMap<u32, usize>,
 }
 
 struct Item<'d> {
@@ -84,12 +85,12 @@ enum Wanted {
 }
 
 /// Whether an element stands among the defaults of a file, which are no parts of the model.
-pub(super) fn is_default(element: Element<'_>) -> bool {
+pub(in crate::opensim) fn is_default(element: Element<'_>) -> bool {
     std::iter::successors(element.parent(), |e| e.parent()).any(|e| e.is("defaults"))
 }
 
 /// The path of a component: the names on the way from the model, sets without a name by default.
-pub(super) fn path(element: Element<'_>) -> String {
+pub(in crate::opensim) fn path(element: Element<'_>) -> String {
     let mut names: Vec<String> = vec![];
     let mut here = Some(element);
     while let Some(e) = here
@@ -127,8 +128,16 @@ fn absolute(context: &str, reference: &str) -> String {
 
 impl<'d> Frames<'d> {
     /// Collects all frames and makes a segment of each body.
-    pub(super) fn collect(model: Element<'d>, builder: &mut ModelBuilder) -> Result<Self, Error> {
-        let mut frames = Self { items: vec![], by_path: HashMap::new(), by_name: HashMap::new() };
+    pub(in crate::opensim) fn collect(
+        model: Element<'d>,
+        builder: &mut ModelBuilder,
+    ) -> Result<Self, Error> {
+        let mut frames = Self {
+            items: vec![],
+            by_path: HashMap::new(),
+            by_name: HashMap::new(),
+            by_element: HashMap::new(),
+        };
         let mut has_ground = false;
         let mut parts = Parts::default();
         for element in model.descendants() {
@@ -172,11 +181,12 @@ impl<'d> Frames<'d> {
         }
         let name = if kind == Kind::Base(None) { "ground" } else { name };
         self.by_name.entry(name).or_default().push(index);
+        self.by_element.insert(element.number(), index);
         self.items.push(Item { element, path, kind });
     }
 
     /// All bodies: their element, name and segment.
-    pub(super) fn bodies(&self) -> impl Iterator<Item = (Element<'d>, Base)> + '_ {
+    pub(in crate::opensim) fn bodies(&self) -> impl Iterator<Item = (Element<'d>, Base)> + '_ {
         self.items.iter().filter_map(|item| match item.kind {
             Kind::Base(Some(id)) => Some((item.element, Some(id))),
             _ => None,
@@ -184,7 +194,7 @@ impl<'d> Frames<'d> {
     }
 
     /// The text of a socket in any of its historical spellings.
-    pub(super) fn socket(owner: Element<'d>, name: &str) -> Option<Element<'d>> {
+    pub(in crate::opensim) fn socket(owner: Element<'d>, name: &str) -> Option<Element<'d>> {
         [format!("socket_{name}"), format!("socket_{name}_connectee_name")]
             .iter()
             .find_map(|tag| owner.child(tag))
@@ -194,7 +204,10 @@ impl<'d> Frames<'d> {
 
     /// What a part of the model is fixed in, under the first of these names that it has: a socket
     /// since version 3.05, a connector or the name of a body before.
-    pub(super) fn reference(owner: Element<'d>, names: &[&str]) -> Result<Element<'d>, Error> {
+    pub(in crate::opensim) fn reference(
+        owner: Element<'d>,
+        names: &[&str],
+    ) -> Result<Element<'d>, Error> {
         let plain = |name: &&str| owner.child(name).filter(|e| !e.text().is_empty());
         let socket = |name: &&str| Self::socket(owner, name);
         names.iter().find_map(socket).or_else(|| names.iter().find_map(plain)).ok_or_else(|| {
@@ -208,7 +221,7 @@ impl<'d> Frames<'d> {
     }
 
     /// The frame that a part of the model is fixed in.
-    pub(super) fn of_part(
+    pub(in crate::opensim) fn of_part(
         &self,
         owner: Element<'d>,
         names: &[&str],
@@ -217,18 +230,32 @@ impl<'d> Frames<'d> {
     }
 
     /// The place of a station or a marker.
-    pub(super) fn point(&self, station: Element<'d>) -> Result<(Base, Vec3), Error> {
+    pub(in crate::opensim) fn point(&self, station: Element<'d>) -> Result<(Base, Vec3), Error> {
         let (base, frame) = self.of_part(station, POINT_FRAME)?;
         Ok((base, frame * triple(station, "location")?))
     }
 
     /// The frame that the text of `reference` names, resolved relative to the component `owner`.
-    pub(super) fn resolve(
+    pub(in crate::opensim) fn resolve(
         &self,
         owner: Element<'d>,
         reference: Element<'d>,
     ) -> Result<(Base, Affine), Error> {
-        let mut index = self.look_up(owner, reference, Wanted::Frame)?;
+        self.placed(self.look_up(owner, reference, Wanted::Frame)?, reference)
+    }
+
+    /// The frame that an element states itself: a body, the ground or an offset; none of another.
+    pub(in crate::opensim) fn at(
+        &self,
+        element: Element<'d>,
+    ) -> Result<Option<(Base, Affine)>, Error> {
+        let index = self.by_element.get(&element.number());
+        index.map(|&index| self.placed(index, element)).transpose()
+    }
+
+    /// Where a frame is, from its body.
+    fn placed(&self, index: usize, reference: Element<'d>) -> Result<(Base, Affine), Error> {
+        let mut index = index;
         let mut transform = Affine::IDENTITY;
         for _ in 0..=self.items.len().min(LONGEST_CHAIN) {
             let item = &self.items[index];

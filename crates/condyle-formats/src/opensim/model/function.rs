@@ -8,14 +8,14 @@ use condyle_math::function::{
 };
 
 /// A function as a file states it: of one coordinate or of several.
-pub(super) enum AnyFunction {
+pub(in crate::opensim) enum AnyFunction {
     One(Function),
     Several(FunctionOfSeveral),
 }
 
 /// The function inside an element that wraps one, directly or in a `<function>`; `None` if there
 /// is none.
-pub(super) fn inside(owner: Element<'_>) -> Result<Option<AnyFunction>, Error> {
+pub(in crate::opensim) fn inside(owner: Element<'_>) -> Result<Option<AnyFunction>, Error> {
     let wrapped = owner.child("function").unwrap_or(owner);
     match wrapped.children().find(|e| is_function(*e)) {
         Some(element) => read(element).map(Some),
@@ -27,11 +27,11 @@ pub(super) fn inside(owner: Element<'_>) -> Result<Option<AnyFunction>, Error> {
 }
 
 /// Whether the function inside an element is a multiple of another, even with factor 1.
-pub(super) fn is_multiplied(owner: Element<'_>) -> bool {
+pub(in crate::opensim) fn is_multiplied(owner: Element<'_>) -> bool {
     owner.child("function").unwrap_or(owner).child("MultiplierFunction").is_some()
 }
 
-fn is_function(element: Element<'_>) -> bool {
+pub(in crate::opensim) fn is_function(element: Element<'_>) -> bool {
     let name = element.name();
     name.ends_with("Function")
         || name.to_lowercase().ends_with("spline")

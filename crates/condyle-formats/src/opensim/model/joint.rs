@@ -395,7 +395,7 @@ fn is_coordinate(function: &Option<AnyFunction>) -> bool {
 
 /// The axes of a custom joint with their positions, rotations from 0 and translations from 3: by
 /// name where the names are OpenSim's own, else in file order.
-fn axes(joint: Element<'_>) -> Vec<(usize, Element<'_>)> {
+pub(in crate::opensim) fn axes(joint: Element<'_>) -> Vec<(usize, Element<'_>)> {
     const NAMES: [&str; 6] =
         ["rotation1", "rotation2", "rotation3", "translation1", "translation2", "translation3"];
     let holder = joint.child("SpatialTransform").or_else(|| {

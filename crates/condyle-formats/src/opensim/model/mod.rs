@@ -52,10 +52,10 @@
 //! | coordinates, axes, joints that nothing takes | all | a warning for each class with their number |
 
 mod constraint;
-mod frame;
-mod function;
-mod include;
-mod joint;
+pub(super) mod frame;
+pub(super) mod function;
+pub(super) mod include;
+pub(super) mod joint;
 mod joint_graph;
 
 use crate::Include;
@@ -107,8 +107,13 @@ pub(super) fn from_document(
         root.error("osim/no-model", format!("{} holds no <Model>", root.describe()))
             .with_help("give an OpenSim model, not a setup or a results file")
     })?;
-    let model = Reader::new(model, &mut warnings)?.read()?;
+    let model = from_element(model, &mut warnings)?;
     Ok(Read { value: model, warnings: warnings.finish() })
+}
+
+/// The model of an element that has all its sets inside.
+pub(super) fn from_element(element: Element<'_>, warnings: &mut Warnings) -> Result<Model, Error> {
+    Reader::new(element, warnings)?.read()
 }
 
 /// The model file while it is read.
@@ -274,7 +279,7 @@ fn is_kinematic(class: &str) -> bool {
         || matches!(class, "Marker" | "Coordinate" | "TransformAxis")
 }
 
-fn is_joint(class: &str) -> bool {
+pub(super) fn is_joint(class: &str) -> bool {
     class.ends_with("Joint") && class != "Joint"
 }
 
@@ -339,10 +344,10 @@ fn directions(model: &Model) -> usize {
 }
 
 /// The world or one of the model's segments.
-type Base = Option<SegmentId>;
+pub(super) type Base = Option<SegmentId>;
 
 /// A finite triple of numbers, or its default.
-fn triple(element: Element<'_>, name: &str) -> Result<Vec3, Error> {
+pub(super) fn triple(element: Element<'_>, name: &str) -> Result<Vec3, Error> {
     let found = Vec3::from(element.child_numbers::<3>(name)?.unwrap_or_default());
     if found.is_finite() {
         return Ok(found);

@@ -201,7 +201,10 @@ pub(super) fn between(q: Quat, p: Quat, part: f64) -> Quat {
     Quat::from(std::array::from_fn(|i| q[i] + part * (p[i] - q[i]))).normalized()
 }
 
-fn seeds<'a>(lattice: &'a Lattice, at: &'a [Quat]) -> impl Iterator<Item = (usize, u32)> + 'a {
+pub(super) fn seeds<'a>(
+    lattice: &'a Lattice,
+    at: &'a [Quat],
+) -> impl Iterator<Item = (usize, u32)> + 'a {
     (0u32..).zip(at).flat_map(|(index, q)| lattice.around(*q).map(move |node| (node, index)))
 }
 

@@ -6,18 +6,24 @@
 //!                               layer, density     what samples leave before a boundary, more where they are sparse
 //!                               even               roughness by chance evened out, edges kept
 //!       -> Field                condyle-model      a cubic spline over all rotations, and its answers
+//! Shape -> distances at nodes   shape              of a limit that is given by formulas, without samples
 //! ```
 
 mod axes;
 mod closing;
 mod density;
+pub mod dependent;
 mod even;
 mod layer;
 mod nearest;
+mod shape;
 
 pub use condyle_model::limit::field::{
-    About, Answer, Evidence, Field, Ground, Hole, Known, Learned, LearnedLimit, Settings, State,
+    About, Answer, Evidence, Fibre, Field, Ground, Hole, Known, Learned, LearnedLimit, Settings,
+    State, fibre,
 };
+
+pub use shape::shaped;
 
 use super::Cloud;
 use condyle_diagnostics::Error;
@@ -98,13 +104,18 @@ pub fn ground(cloud: &Cloud, settings: &Settings) -> Result<Ground, Error> {
         chart: axes::of(cloud),
         settings: *settings,
         known: None,
+        shape: None,
     })
 }
 
 /// The field of a ground: of one that was saved, the same as it was.
 #[must_use]
 pub fn made(ground: &Arc<Ground>) -> Field {
-    Field::new(ground.clone(), grid(ground))
+    let grid = match &ground.shape {
+        Some(shape) => shape::grid(ground, shape),
+        None => grid(ground),
+    };
+    Field::new(ground.clone(), grid)
 }
 
 fn grid(ground: &Ground) -> Grid {

@@ -7,7 +7,7 @@ use super::behind::{Behind, Between};
 use super::derivative_plan::{DerivativePlan, plan};
 use super::instruction::{Code, Frame, Number};
 use super::program::Program;
-use crate::component::{Law, PortType, Signal};
+use crate::component::{Combine, Correlate, Law, PortType, Signal};
 use crate::model::{
     ComponentId, CoordinateId, CoordinateKind, Model, Node, SegmentId, dependency_order, measured,
 };
@@ -45,7 +45,17 @@ struct Compiler<'m> {
 impl Program {
     /// Compiles a model. Models are checked when they are built, so this cannot fail.
     pub fn compile(model: &Model) -> Self {
-        compile(model, &vec![true; model.segments.len()], &vec![true; model.tangent_len()])
+        let moving = vec![true; model.tangent_len()];
+        compile(model, &vec![true; model.segments.len()], &moving, true)
+    }
+
+    /// Compiles a model without its limits on what is measured between segments, which move nothing: all else is that of
+    /// [`Program::compile`], to the bit, and the rows of these limits are not there.
+    ///
+    /// For those who ask for no limits: what a limit needs to be asked is then not made.
+    pub fn compile_unmeasured(model: &Model) -> Self {
+        let moving = vec![true; model.tangent_len()];
+        compile(model, &vec![true; model.segments.len()], &moving, false)
     }
 
     /// Compiles what some segments need, with derivatives along some directions.
@@ -90,12 +100,12 @@ impl Program {
                 here = model.segment(id).parent;
             }
         }
-        compile(model, &wanted, moving)
+        compile(model, &wanted, moving, true)
     }
 }
 
-/// Compiles a model with its `wanted` segments, which include their ancestors.
-fn compile(model: &Model, wanted: &[bool], moving: &[bool]) -> Program {
+/// Compiles a model with its `wanted` segments, which include their ancestors, and perhaps its limits on what is measured.
+fn compile(model: &Model, wanted: &[bool], moving: &[bool], measured_limits: bool) -> Program {
     // A built model has no dependency cycle, so the default, an empty order, is never used.
     let order = dependency_order(model).unwrap_or_default();
     let components = model.components.len();
@@ -146,7 +156,7 @@ fn compile(model: &Model, wanted: &[bool], moving: &[bool]) -> Program {
         measured: measured(model, &order),
         effective: HashMap::new(),
     };
-    compiler.mark_needed(&order, wanted);
+    compiler.mark_needed(&order, wanted, measured_limits);
     compiler.limits();
     compiler.find_effective(&order);
     for &node in &order {
@@ -180,7 +190,7 @@ fn compile(model: &Model, wanted: &[bool], moving: &[bool]) -> Program {
 impl Compiler<'_> {
     /// Marks the components that wanted segments, coordinates and limits depend on, directly or not; the
     /// others are not compiled.
-    fn mark_needed(&mut self, order: &[Node], wanted: &[bool]) {
+    fn mark_needed(&mut self, order: &[Node], wanted: &[bool], measured_limits: bool) {
         let model = self.model;
         let motion = |segment: usize| model.segments[segment].motion;
         let followed = || model.coordinates.iter().filter_map(|c| c.follows);
@@ -197,7 +207,8 @@ impl Compiler<'_> {
         self.readers = readers;
         let limits = model
             .component_ids()
-            .filter(|id| of_model[id.index()] && model.components[id.index()].law.bounds());
+            .filter(|id| of_model[id.index()] && model.components[id.index()].law.bounds())
+            .filter(|id| measured_limits || !self.measured[id.index()]);
         let wanted = (0..wanted.len()).filter(|&segment| wanted[segment]).filter_map(motion);
         let limits = limits.map(|id| Signal::Output(id, 0));
         self.needed = self.reached(order, wanted.chain(followed()).chain(limits)).0;
@@ -244,6 +255,7 @@ impl Compiler<'_> {
             }
             let held = match component.law {
                 Law::Depend(_) => component.at("passive"),
+                Law::Field(_) => component.at("orientation"),
                 _ => &component.inputs,
             };
             for (k, &source) in held.iter().enumerate() {
@@ -314,7 +326,7 @@ impl Compiler<'_> {
                         found.push((Signal::Output(id, k as u32), (coordinate, steps)));
                     }
                 }
-                Law::Combine(combine) => {
+                Law::Combine(Combine { function }) | Law::Correlate(Correlate { function, .. }) => {
                     let coordinate = |signal: &Signal| match route(*signal)? {
                         (id, steps) if steps.is_empty() => Some(id),
                         _ => None,
@@ -332,7 +344,7 @@ impl Compiler<'_> {
                         (_, [at]) => **at,
                         _ => continue,
                     };
-                    let (own, function) = (coordinates[at], combine.function.clone());
+                    let (own, function) = (coordinates[at], function.clone());
                     let step = Between::Several { function, coordinates, at };
                     found.push((Signal::Output(id, 0), (own, vec![step])));
                 }

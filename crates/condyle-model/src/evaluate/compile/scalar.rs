@@ -140,6 +140,12 @@ impl Compiler<'_> {
                 let result = self.combine(&combine.function, &inputs);
                 self.outputs[id.index()].push(result);
             }
+            Scalars::Correlate(law) => {
+                let inputs: Vec<Operand> =
+                    component.inputs.iter().map(|&s| self.scalar(s)).collect();
+                let result = self.combine(&law.function, &inputs);
+                self.outputs[id.index()].push(result);
+            }
             Scalars::Depend(depend) => {
                 let result = self.depend(id, depend, component.inputs[0], component.inputs[1]);
                 self.outputs[id.index()].push(result);
@@ -242,11 +248,18 @@ impl Compiler<'_> {
         let (mut inputs, mut outputs) = (vec![], vec![]);
         let law = component.law.clone();
         let orientation = law.outputs().0 == PortType::Orientation;
-        for (k, &source) in component.inputs.iter().enumerate() {
+        let held = law.outputs().1;
+        let mut orientations = 0;
+        for (k, (port, source)) in component.ports().enumerate() {
             let scalar = self.scalar(source);
             let first = self.register(scalar);
             let output = Signal::Output(id, k as u32);
-            if orientation {
+            let turns = port.takes == PortType::Orientation;
+            orientations += usize::from(turns);
+            // What comes after the numbers that it limits is what it depends on.
+            if k >= held {
+                inputs.extend((0..if turns { 4 } else { 1 }).map(|k| Number(first.0 + k)));
+            } else if orientation {
                 inputs.extend((0..4).map(|k| Number(first.0 + k)));
                 let first = match self.effective.get(&output) {
                     Some(&id) => self.own(id),
@@ -263,7 +276,7 @@ impl Compiler<'_> {
         self.program.code.rows.extend(&rows);
         let results = outputs.iter().map(|&register| Operand::Register(register)).collect();
         let measured = self.measured[id.index()];
-        let call = LimitCall { law, orientation, measured, inputs, outputs, rows };
+        let call = LimitCall { law, orientations, measured, inputs, outputs, rows };
         self.program.code.limits.push(call);
         let limit = self.program.code.limits.len() as u32 - 1;
         self.program.code.instructions.push(Instruction::Limit { limit });

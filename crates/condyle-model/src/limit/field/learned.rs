@@ -1,6 +1,7 @@
 //! A learned limit as files hold it: whose rotation, from whom, and the field, which is made when it is first
 //! asked for.
 
+use super::dependent::{Dependence, Dependent, Given};
 use super::{Field, Ground, Learned};
 use std::sync::{Arc, OnceLock};
 
@@ -33,6 +34,18 @@ pub struct LearnedLimit {
     learned: Option<Learned>,
     field: OnceLock<Field>,
     make: fn(&Arc<Ground>) -> Field,
+    depends: Option<Depends>,
+}
+
+/// How a dependence is made of the ground of its limit.
+pub type MakeDependent = fn(&Ground, &Dependence) -> Dependent;
+
+/// What a limit depends on, made or not yet.
+#[derive(Clone, Debug)]
+struct Depends {
+    dependence: Arc<Dependence>,
+    made: OnceLock<Dependent>,
+    make: MakeDependent,
 }
 
 impl LearnedLimit {
@@ -45,13 +58,34 @@ impl LearnedLimit {
         learned: Option<Learned>,
         make: fn(&Arc<Ground>) -> Field,
     ) -> Self {
-        Self { about, ground, learned, field: OnceLock::new(), make }
+        Self { about, ground, learned, field: OnceLock::new(), make, depends: None }
     }
 
     /// The same limit with its field, which is then not made again.
     #[must_use]
     pub fn with_field(self, field: Field) -> Self {
         Self { field: OnceLock::from(field), ..self }
+    }
+
+    /// The same limit, given the driver of each of its samples: it depends on another joint.
+    #[must_use]
+    pub fn depending_on(self, dependence: Dependence, make: MakeDependent) -> Self {
+        let depends = Depends { dependence: Arc::new(dependence), made: OnceLock::new(), make };
+        Self { depends: Some(depends), ..self }
+    }
+
+    /// What it depends on, without making anything; `None` if on nothing.
+    #[must_use]
+    pub fn dependence(&self) -> Option<&Dependence> {
+        self.depends.as_ref().map(|depends| &*depends.dependence)
+    }
+
+    /// The limit with its driver, made when this is first called; `None` if it depends on nothing.
+    #[must_use]
+    pub fn given(&self) -> Option<Given<'_>> {
+        let depends = self.depends.as_ref()?;
+        let made = depends.made.get_or_init(|| (depends.make)(&self.ground, &depends.dependence));
+        Some(Given { limit: self, dependence: &depends.dependence, made })
     }
 
     /// What people want to know of it.
@@ -72,6 +106,12 @@ impl LearnedLimit {
         self.field.get_or_init(|| (self.make)(&self.ground))
     }
 
+    /// Whether the field was made already.
+    #[must_use]
+    pub fn is_made(&self) -> bool {
+        self.field.get().is_some()
+    }
+
     /// What its file says was learned, without making the field.
     #[must_use]
     pub fn stated(&self) -> Option<&Learned> {
@@ -88,6 +128,8 @@ impl LearnedLimit {
 /// Equal are limits of equal ground and description: what it is made of and what is said of it.
 impl PartialEq for LearnedLimit {
     fn eq(&self, other: &Self) -> bool {
-        self.about == other.about && self.ground == other.ground
+        self.about == other.about
+            && self.ground == other.ground
+            && self.dependence() == other.dependence()
     }
 }

@@ -2,10 +2,12 @@
 //!
 //! ```text
 //! samples -> Ground             packed             rotations as files hold them, the axes of the map
+//! formulas -> Ground            shape              ends of three turns, for limits that are published as such
 //! Ground -> distances at nodes  condyle-learn      what no empty ball covers, with a layer, holes carved
 //!        -> a smooth function   chart, lattice     a cubic spline over all rotations
 //! rotation -> Answer            projection         state, distance, nearest valid rotation, evidence
 //!                               boundary           where its search begins
+//! direction -> Fibre            reach              whether a bone can point there, and how far it then twists
 //! ```
 //!
 //! Distances are angles of rotation in radians, positive inside, and go on outside everywhere. `q` and `-q` give the same
@@ -20,17 +22,23 @@
 
 mod boundary;
 mod chart;
+pub mod dependent;
 mod lattice;
 mod learned;
 mod outer;
 mod packed;
 mod projection;
+mod reach;
+mod shape;
 
 pub use boundary::Boundary;
 pub use chart::Chart;
+pub use dependent::{Dependence, Dependent, Driver, Drivers, Given};
 pub use lattice::Lattice;
-pub use learned::{About, LearnedLimit};
+pub use learned::{About, LearnedLimit, MakeDependent};
 pub use packed::{packed, snapped, unpacked};
+pub use reach::{Fibre, fibre};
+pub use shape::{Ends, Shape, ShapeError};
 
 use condyle_math::{Quat, Vec3};
 use std::f64::consts::PI;
@@ -87,7 +95,7 @@ impl State {
 /// What is known near a rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
-    /// The angle to the nearest sample, in radians.
+    /// The angle to the nearest sample, in radians; NaN of what has no samples.
     pub angle: f64,
     /// That sample's position among those of [`Field::samples`].
     pub sample: usize,
@@ -155,6 +163,8 @@ pub struct Ground {
     pub settings: Settings,
     /// What was learned before and is not to be found anew.
     pub known: Option<Known>,
+    /// Formulas that say what is possible, instead of samples.
+    pub shape: Option<Arc<Shape>>,
 }
 
 /// Numbers that follow from samples, and of which a rounding decides too much to find them again.
@@ -317,7 +327,7 @@ impl Field {
                 (best, sample) = (dot, index);
             }
         }
-        let angle = self.samples.get(sample).map_or(PI, |p| q.angle_to(*p));
+        let angle = self.samples.get(sample).map_or(f64::NAN, |p| q.angle_to(*p));
         Evidence { angle, sample, count: self.counts.get(sample).copied().unwrap_or(0) }
     }
 
@@ -347,9 +357,17 @@ impl Field {
         let anchor = || {
             let sample = self.known(inward).sample;
             let near = self.samples.get(sample).copied().filter(inside);
-            near.or_else(|| self.samples.iter().copied().find(inside))
+            let middle = || {
+                self.ground
+                    .shape
+                    .as_ref()
+                    .map(|shape| self.chart.inward(shape.middle()))
+                    .filter(inside)
+            };
+            near.or_else(|| self.samples.iter().copied().find(inside)).or_else(middle)
         };
-        let found = projection::project(&self.lattice, spline, inward, starts, anchor);
+        let found =
+            projection::project(&projection::Spline(&self.lattice, spline), inward, starts, anchor);
         let Some((mut found, sure)) = found else {
             return same(q);
         };

@@ -20,6 +20,29 @@ const LANDED: f64 = 6e-5;
 /// Steps along the boundary that are shorter than this, in radians, are left out.
 const SETTLED: f64 = 1e-3;
 
+/// A smooth function on rotations of the map, given with the sign that [`super::chart::signed`] gives.
+pub(super) trait Surface {
+    /// Its value, positive inside.
+    fn value(&self, q: Quat) -> f64;
+    /// The value with its slope by the components of the quaternion.
+    fn value_and_slope(&self, q: Quat) -> (f64, [f64; 4]);
+}
+
+/// A spline by its lattice and its coefficients.
+pub(super) struct Spline<'a>(pub(super) &'a Lattice, pub(super) &'a [f32]);
+
+impl Surface for Spline<'_> {
+    #[inline]
+    fn value(&self, q: Quat) -> f64 {
+        self.0.value(self.1, q)
+    }
+
+    #[inline]
+    fn value_and_slope(&self, q: Quat) -> (f64, [f64; 4]) {
+        self.0.value_and_slope(self.1, q)
+    }
+}
+
 /// The slope along turns about the child's own axes.
 #[inline]
 pub(super) fn tangent(q: Quat, g: [f64; 4]) -> Vec3 {
@@ -48,9 +71,9 @@ fn towards(q: Quat, p: Quat) -> Vec3 {
 
 /// From outside along the slope to the boundary; `None` where that leads nowhere.
 #[inline]
-fn landed(lattice: &Lattice, spline: &[f32], mut q: Quat, steps: usize) -> Option<(Quat, Vec3)> {
+fn landed(surface: &impl Surface, mut q: Quat, steps: usize) -> Option<(Quat, Vec3)> {
     for _ in 0..steps {
-        let (distance, g) = lattice.value_and_slope(spline, q);
+        let (distance, g) = surface.value_and_slope(q);
         let slope = tangent(q, g);
         if (0.0..LANDED).contains(&distance) {
             return Some((q, slope));
@@ -68,14 +91,14 @@ fn landed(lattice: &Lattice, spline: &[f32], mut q: Quat, steps: usize) -> Optio
 /// The nearest rotation inside to `from` that is outside, from a place near it on the boundary; `None` if steps do not
 /// settle, or lead away.
 #[inline]
-fn approach(lattice: &Lattice, spline: &[f32], from: Quat, start: Quat) -> Option<Quat> {
+fn approach(surface: &impl Surface, from: Quat, start: Quat) -> Option<Quat> {
     let mut at = start;
     // Moving by δ along a boundary of curvature κ turns what is left of the way along it by (1 + κ·distance) δ; most
     // boundaries are convex, with κ of about 1.
     let mut part = 1.0 / (1.0 + towards(at, from).norm());
     let mut before: Option<(Vec3, Vec3)> = None;
     for _ in 0..9 {
-        let (distance, g) = lattice.value_and_slope(spline, at);
+        let (distance, g) = surface.value_and_slope(at);
         let slope = tangent(at, g);
         let square = slope.norm_squared();
         if square < 0.04 {
@@ -109,18 +132,18 @@ fn approach(lattice: &Lattice, spline: &[f32], from: Quat, start: Quat) -> Optio
 /// `starts` are places near the boundary; `anchor` gives a rotation inside.
 #[inline]
 pub(super) fn project(
-    lattice: &Lattice,
-    spline: &[f32],
+    surface: &impl Surface,
     from: Quat,
     starts: [Option<Quat>; 3],
     anchor: impl FnOnce() -> Option<Quat>,
 ) -> Option<(Quat, bool)> {
     let mut best: Option<(Quat, bool)> = None;
     for start in starts.into_iter().flatten() {
-        let found = match approach(lattice, spline, from, start) {
+        let found = match approach(surface, from, start) {
             Some(found) => Some((found, true)),
-            None => landed(lattice, spline, start, 12)
-                .map(|landed| (descended(lattice, spline, from, landed), false)),
+            None => {
+                landed(surface, start, 12).map(|landed| (descended(surface, from, landed), false))
+            }
         };
         let nearer = |p: Quat| best.is_none_or(|(q, _)| from.dot(p).abs() > from.dot(q).abs());
         best = found.filter(|(p, _)| nearer(*p)).or(best);
@@ -128,19 +151,19 @@ pub(super) fn project(
     if best.is_some() {
         return best;
     }
-    let landed = match landed(lattice, spline, from, 12) {
+    let landed = match landed(surface, from, 12) {
         Some(found) => found,
         None => {
-            let found = crossing(lattice, spline, from, anchor()?);
-            (found, tangent(found, lattice.value_and_slope(spline, found).1))
+            let found = crossing(surface, from, anchor()?);
+            (found, tangent(found, surface.value_and_slope(found).1))
         }
     };
-    Some((descended(lattice, spline, from, landed), false))
+    Some((descended(surface, from, landed), false))
 }
 
 /// From a rotation on the boundary and the slope there, along the boundary while that comes nearer to `from`.
 #[cold]
-fn descended(lattice: &Lattice, spline: &[f32], from: Quat, landed_at: (Quat, Vec3)) -> Quat {
+fn descended(surface: &impl Surface, from: Quat, landed_at: (Quat, Vec3)) -> Quat {
     let (mut at, mut slope) = landed_at;
     let mut nearness = from.dot(at).abs();
     let mut share = 1.0;
@@ -151,7 +174,7 @@ fn descended(lattice: &Lattice, spline: &[f32], from: Quat, landed_at: (Quat, Ve
         if along.norm_squared() < 2.5e-7 * to.norm_squared().max(1e-6) || share < 0.002 {
             break;
         }
-        let next = landed(lattice, spline, turned(at, along * share), 3);
+        let next = landed(surface, turned(at, along * share), 3);
         match next.filter(|(q, _)| from.dot(*q).abs() > nearness) {
             Some((q, g)) => {
                 (at, slope) = (q, g);
@@ -164,14 +187,14 @@ fn descended(lattice: &Lattice, spline: &[f32], from: Quat, landed_at: (Quat, Ve
 }
 
 /// The last rotation inside on the way from `inside` to `outside`.
-fn crossing(lattice: &Lattice, spline: &[f32], outside: Quat, inside: Quat) -> Quat {
+fn crossing(surface: &impl Surface, outside: Quat, inside: Quat) -> Quat {
     let way = (inside.conjugate() * outside).log();
     let (mut near, mut far) = (0.0, 1.0);
     let at = |part: f64| super::chart::signed((inside * Quat::exp(way * part)).normalized());
     // To 2⁻³⁰ of at most half a turn.
     for _ in 0..30 {
         let middle = 0.5 * (near + far);
-        if lattice.value(spline, at(middle)) >= 0.0 { near = middle } else { far = middle }
+        if surface.value(at(middle)) >= 0.0 { near = middle } else { far = middle }
     }
     if near == 0.0 { inside } else { at(near) }
 }

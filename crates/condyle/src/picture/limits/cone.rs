@@ -19,7 +19,9 @@ pub(super) fn draw(figure: &Figure, bound: &Bound, law: &JointCone, scene: &mut 
     let Some(rotation) = rotation(law, &figure.pose.bounded(bound).collect::<Vec<f64>>()) else {
         return;
     };
-    let Some((segment, frame)) = frame(figure, bound, law, rotation) else { return };
+    let said =
+        Said { rotation: &|numbers| self::rotation(law, numbers), off: &|a, b| off(law, a, b) };
+    let Some((segment, frame)) = frame(figure, bound, &said, rotation) else { return };
     if !figure.is_signed(segment) {
         return;
     }
@@ -123,23 +125,36 @@ fn rotation(law: &JointCone, numbers: &[f64]) -> Option<Mat3> {
     found.x.is_finite().then_some(found)
 }
 
+/// What a limit says of a rotation.
+pub(super) struct Said<'a> {
+    /// The rotation of the numbers at its ports.
+    pub(super) rotation: &'a dyn Fn(&[f64]) -> Option<Mat3>,
+    /// How far a rotation is from one that is said.
+    pub(super) off: &'a dyn Fn(Mat3, Mat3) -> f64,
+}
+
 /// The segment that the rotation turns, and the frame in the world in which it does: that of an ancestor, with
 /// its joint, or of the world.
 ///
 /// Found by comparing: in this pose and in one beside it, the segment has to be turned in the frame as the
 /// cone says, or its bone to point there. Where no frame does, the one that this pose alone gives.
-fn frame(figure: &Figure, bound: &Bound, law: &JointCone, now: Mat3) -> Option<(SegmentId, Mat3)> {
+pub(super) fn frame(
+    figure: &Figure,
+    bound: &Bound,
+    said: &Said,
+    now: Mat3,
+) -> Option<(SegmentId, Mat3)> {
     let model = figure.model;
     let mut best: Option<(f64, SegmentId, Mat3)> = None;
     let set = model.components()[bound.component.index()].joint_set;
     let beside = beside(figure)?;
-    let turned = rotation(law, &beside.bounded(bound).collect::<Vec<f64>>())?;
+    let turned = (said.rotation)(&beside.bounded(bound).collect::<Vec<f64>>())?;
     for (id, _) in model.outputs_of(set) {
         let frames = frames(figure, figure.pose, id);
         for (frame, then) in frames.into_iter().zip(self::frames(figure, &beside, id)) {
             let own = |pose: &Pose| (pose.segment(id) * model.segment(id).joint_in_segment).linear;
             let off =
-                off(law, own(figure.pose), frame * now) + off(law, own(&beside), then * turned);
+                (said.off)(own(figure.pose), frame * now) + (said.off)(own(&beside), then * turned);
             if off.is_finite() && best.as_ref().is_none_or(|(least, ..)| off < *least - 1e-6) {
                 best = Some((off, id, frame));
             }
@@ -202,7 +217,11 @@ mod tests {
                 let Law::Cone(law) = &component.law else { continue };
                 let numbers: Vec<f64> = figure.pose.bounded(bound).collect();
                 let turned = rotation(law, &numbers).expect("a rotation");
-                let (segment, frame) = frame(figure, bound, law, turned).expect("a frame");
+                let said = Said {
+                    rotation: &|numbers| rotation(law, numbers),
+                    off: &|a, b| off(law, a, b),
+                };
+                let (segment, frame) = frame(figure, bound, &said, turned).expect("a frame");
                 let base = match &human.segment(segment).name[..] {
                     "humerus_r" | "humerus_l" => "thorax",
                     "femur_r" | "femur_l" => "pelvis",

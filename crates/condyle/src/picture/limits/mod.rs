@@ -1,9 +1,10 @@
-//! What limits allow, and where the pose is in it: reach cones and ellipses as fans about their joint, the
+//! What limits allow, and where the pose is in it: reach cones, what learned fields reach, and ellipses as fans about their joint, the
 //! range of a rotation as an arc, that of a translation as a bar.
 
 mod arc;
 mod cone;
 mod ellipse;
+mod field;
 
 use super::figure::Figure;
 use super::marks::line;
@@ -19,6 +20,7 @@ pub(super) fn limits(figure: &Figure, named: bool, scene: &mut Scene) {
         match &figure.model.components()[bound.component.index()].law {
             Law::Cone(law) => cone::draw(figure, bound, law, scene),
             Law::Ellipse(law) => ellipse::draw(figure, &mut sweep, bound, law, scene),
+            Law::Field(law) => field::draw(figure, bound, law, scene),
             _ => {}
         }
     }

@@ -12,8 +12,8 @@ use condyle_diagnostics::did_you_mean;
 use condyle_math::function::Function;
 use condyle_model::Law;
 use condyle_model::component::{
-    Arity, Ball, Combine, Compensate, Depend, Kind, Map, Pivot, PivotError, Place, PortType,
-    Product, RelativeOrientation, Rotate, Translate,
+    Arity, Ball, Combine, Compensate, Correlate, Depend, Kind, Map, Pivot, PivotError, Place,
+    PortType, Product, RelativeOrientation, Rotate, Translate,
 };
 
 /// The help where a direction is missing.
@@ -28,14 +28,35 @@ struct LawReader {
 }
 
 /// The keys of a learned limit; `segment` and `reference` stand for a component that measures them.
-const FIELD: &[&str] =
-    &["segment", "reference", "file", "limit", "in_reference", "in_segment", "mirrored", "holes"];
+const FIELD: &[&str] = &[
+    "segment",
+    "reference",
+    "driver_segment",
+    "driver_reference",
+    "file",
+    "limit",
+    "in_reference",
+    "in_segment",
+    "driver_in_reference",
+    "driver_in_segment",
+    "mirrored",
+    "holes",
+];
 
 const READERS: &[LawReader] = &[
     reader("map", &["function", "functions", "in", "out"], |r, f| r.map(f)),
     reader("combine", &["function"], |r, f| {
         let node = r.required(f, "function", "{ slopes = [...], intercept = 0 }")?;
         Some(Law::Combine(Combine { function: r.several(node, "function")? }))
+    }),
+    reader("correlate", &["function", "region"], |r, f| {
+        let node = r.required(f, "function", "{ slopes = [...], intercept = 0 }")?;
+        let function = r.several(node, "function")?;
+        let region = match f.get("region") {
+            Some(node) => Some(r.region(node, "region", function.arity())?),
+            None => None,
+        };
+        Some(Law::Correlate(Correlate { function, region }))
     }),
     reader("depend", &["lower", "upper", "in", "out"], |r, f| r.depend(f)),
     reader(

@@ -39,6 +39,8 @@ impl ModelReader<'_> {
         };
         let in_reference = self.axes_in(fields, "in_reference");
         let in_segment = self.axes_in(fields, "in_segment");
+        let driver_in_reference = self.axes_in(fields, "driver_in_reference");
+        let driver_in_segment = self.axes_in(fields, "driver_in_segment");
         let planes = [("x", 0), ("y", 1), ("z", 2)];
         let mirrored = match fields.get("mirrored") {
             None => None,
@@ -47,7 +49,16 @@ impl ModelReader<'_> {
         let words = [("open", false), ("closed", true)];
         let strict = self.word(fields, "holes", &words)?;
         let (limit, in_reference, in_segment) = (limit?, in_reference?, in_segment?);
-        Some(Law::Field(FieldLimit { limit, in_reference, in_segment, mirrored, strict }))
+        let (driver_in_reference, driver_in_segment) = (driver_in_reference?, driver_in_segment?);
+        Some(Law::Field(FieldLimit {
+            limit,
+            in_reference,
+            in_segment,
+            driver_in_reference,
+            driver_in_segment,
+            mirrored,
+            strict,
+        }))
     }
 
     /// The limit in a file, whose path is seen from the text that names it.
@@ -101,8 +112,8 @@ impl ModelReader<'_> {
         if exact { Some(given) } else { self.rotation_of(node, key) }
     }
 
-    /// Of a field of two segments, the component that measures the one in the other: its name, which the
-    /// field reads.
+    /// What a field reads: the rotation that it limits, and where it depends on another joint its driver. Of two segments it
+    /// is the component that measures the one in the other.
     pub(super) fn measured_for(
         &mut self,
         draft: &mut Draft,
@@ -110,28 +121,59 @@ impl ModelReader<'_> {
         name: &Name,
         fields: &Fields<'_>,
     ) -> Option<Vec<Name>> {
-        if let Some(node) = fields.get("orientation") {
-            for key in ["segment", "reference"] {
+        let wanted =
+            "an `orientation`, or the `segment` whose rotation is limited and its `reference`";
+        let own = ["orientation", "segment", "reference"];
+        let mut ports =
+            vec![self.turned(draft, set, ("measured_for", name), fields, own, wanted)?];
+        let driver = ["driver_orientation", "driver_segment", "driver_reference"];
+        if let Some(node) = fields.get("driver") {
+            for key in driver {
                 if fields.get(key).is_some() {
-                    self.exclusive(node, "orientation", key);
+                    self.exclusive(node, "driver", key);
                     return None;
                 }
             }
-            return Some(vec![self.text(node, "orientation")?]);
+            ports.push(self.text(node, "driver")?);
+        } else if driver.iter().any(|key| fields.get(key).is_some()) {
+            let wanted =
+                "a `driver_orientation`, or the `driver_segment` that the limit depends on";
+            let driven = ("driver_of", name);
+            ports.push(self.turned(draft, set, driven, fields, driver, wanted)?);
         }
-        let wanted =
-            "an `orientation`, or the `segment` whose rotation is limited and its `reference`";
-        let segment = self.required(fields, "segment", wanted)?;
-        let mut ports = vec![self.text(segment, "segment")?];
-        if let Some(node) = fields.get("reference") {
-            ports.push(self.text(node, "reference")?);
+        Some(ports)
+    }
+
+    /// A rotation at a port, or of a segment in another by a component that measures it.
+    fn turned(
+        &mut self,
+        draft: &mut Draft,
+        set: &str,
+        (prefix, name): (&str, &Name),
+        fields: &Fields<'_>,
+        [port, segment, reference]: [&'static str; 3],
+        wanted: &str,
+    ) -> Option<Name> {
+        if let Some(node) = fields.get(port) {
+            for key in [segment, reference] {
+                if fields.get(key).is_some() {
+                    self.exclusive(node, port, key);
+                    return None;
+                }
+            }
+            return self.text(node, port);
+        }
+        let node = self.required(fields, segment, wanted)?;
+        let mut ports = vec![self.text(node, segment)?];
+        if let Some(node) = fields.get(reference) {
+            ports.push(self.text(node, reference)?);
         }
         let law = Law::RelativeOrientation(RelativeOrientation { reference: ports.len() > 1 });
         // The end of a name tells its side.
         let spot = Spot { ..name.spot };
-        let measured = Name { text: format!("measured_for_{}", name.text), spot };
+        let measured = Name { text: format!("{prefix}_{}", name.text), spot };
         let port = Name { text: measured.text.clone(), spot };
         draft.components.push(ComponentDraft { set: set.to_owned(), name: measured, law, ports });
-        Some(vec![port])
+        Some(port)
     }
 }

@@ -68,12 +68,12 @@ impl ModelReader<'_> {
             _ => {}
         }
         if let Some(facing) = top.get("facing").and_then(|n| self.text(n, "facing")) {
-            match Facing::named(&facing.text) {
+            match Facing::named_in(&facing.text, draft.up) {
                 Some(found) => draft.facing = found,
                 None => {
                     let message = format!("unknown direction `{}`", facing.text);
                     let help = "give the axis along which the character looks: \"+x\", \"-x\", \
-                                \"+z\" or \"-z\"";
+                                \"+z\" or \"-z\"; where z is up \"+y\" or \"-y\"";
                     self.texts.error(facing.spot, "model/facing", message, help);
                 }
             }

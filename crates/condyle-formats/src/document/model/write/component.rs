@@ -2,6 +2,7 @@
 
 use super::{Writer, frame, function, key, knots, line, number, numbers, several_of, text, vector};
 use crate::document::limit;
+use crate::document::region::region_lines;
 use condyle_math::function::SimmSpline;
 use condyle_math::{Quat, Vec3};
 use condyle_model::component::{
@@ -36,6 +37,12 @@ impl Writer<'_> {
                 }
             },
             Law::Combine(c) => line!(self, "function = {}", several_of(&c.function)),
+            Law::Correlate(c) => {
+                line!(self, "function = {}", several_of(&c.function));
+                if let Some(region) = &c.region {
+                    line!(self, "region = {{ {} }}", region_lines(region).join(", "));
+                }
+            }
             Law::Depend(c) => {
                 for (side, f) in [("lower", &c.lower), ("upper", &c.upper)] {
                     if let Some(f) = f {
@@ -122,8 +129,12 @@ impl Writer<'_> {
 
     /// A learned limit with all that it was learned from.
     fn field(&mut self, component: &Component, field: &FieldLimit) {
-        for (key, axes) in [("in_reference", field.in_reference), ("in_segment", field.in_segment)]
-        {
+        for (key, axes) in [
+            ("in_reference", field.in_reference),
+            ("in_segment", field.in_segment),
+            ("driver_in_reference", field.driver_in_reference),
+            ("driver_in_segment", field.driver_in_segment),
+        ] {
             if axes != Quat::IDENTITY {
                 line!(self, "{key} = {}", numbers(&axes.to_array()));
             }

@@ -65,7 +65,7 @@ impl Writer<'_> {
             line!(self, "up = \"z\"");
         }
         if model.facing() != Facing::default() {
-            line!(self, "facing = \"{}\"", model.facing().name());
+            line!(self, "facing = \"{}\"", model.facing().name_in(model.up()));
         }
         for segment in model.segments() {
             self.segment(segment);
@@ -358,7 +358,7 @@ fn knots(list: &mut dyn Iterator<Item = (f64, f64)>) -> String {
     format!("[{}]", list.join(", "))
 }
 
-fn function(f: &Function) -> String {
+pub(in crate::document) fn function(f: &Function) -> String {
     let curve = match &f.curve {
         Curve::Constant(c) if f.factor == 1.0 => return number(*c),
         Curve::Constant(c) => format!("constant = {}", number(*c)),
@@ -376,7 +376,7 @@ fn function(f: &Function) -> String {
     }
 }
 
-fn several_of(f: &FunctionOfSeveral) -> String {
+pub(in crate::document) fn several_of(f: &FunctionOfSeveral) -> String {
     match f {
         FunctionOfSeveral::Linear { slopes, intercept } => {
             format!("{{ slopes = {}, intercept = {} }}", numbers(slopes), number(*intercept))

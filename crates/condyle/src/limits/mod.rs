@@ -27,11 +27,16 @@
 //! [`open::limit`](crate::open::limit) opens a file, [`encode::limit`](crate::encode::limit) gives the bytes of one. The field
 //! itself is made when [`LearnedLimit::field`] is first called, which for 96 nodes takes about a second.
 
+mod swing;
+
+pub use swing::{COLOURS, LEVEL, Swing};
+
 pub use condyle_learn::limits::field::{
     About, Answer, Evidence, Field, Ground, Hole, Known, Learned, LearnedLimit, Settings, State,
-    limit as learn,
+    limit as learn, made, shaped,
 };
 pub use condyle_learn::limits::{Cloud, Gathered, SPACING, herda2003};
+pub use condyle_model::limit::field::{Ends, Shape, ShapeError};
 
 use condyle_math::{Quat, Vec3};
 use condyle_mesh::Mesh;

@@ -1,0 +1,112 @@
+//! `condyle learn joint`: a free joint from a standing trial.
+
+use crate::commands::{Outcome, ZerosArgument, zeros};
+use crate::failure::{Failure, warned};
+use crate::output;
+use crate::screen::say;
+use clap::Args;
+use condyle::formats::document;
+use condyle::learn::calibration::FreeJoint;
+use condyle::math::EulerOrder;
+use condyle::open;
+use std::path::PathBuf;
+
+/// Make a model of two segments with a free joint between them from a standing trial: with it `learn coupling` tracks.
+///
+/// The joint's frame comes from landmarks: z along its medial and lateral end to the right, y toward the marker at the parent's
+/// origin, x forward. Both segments have these axes while the person stands, so that all angles are 0 there. Markers of the lists are placed as the trial shows
+/// them; a landmark that later trials do not show stays where the others say it is.
+#[derive(Debug, Args)]
+pub(super) struct Joint {
+    /// The standing trial.
+    #[arg(value_name = "STATIC")]
+    trial: PathBuf,
+    /// The joint's name; its coordinates begin with it.
+    #[arg(long, default_value = "knee_r")]
+    name: String,
+    /// The parent segment and its markers, three or more.
+    #[arg(long, value_name = "SEGMENT=M1,M2,...", default_value = "thigh_r=RGT,RLFE,RMFE", value_parser = segment)]
+    parent: (String, Vec<String>),
+    /// The child segment and its markers, three or more.
+    #[arg(long, value_name = "SEGMENT=M1,M2,...", default_value = "shank_r=RTT,RFH,RMEDMAL,RLATMAL", value_parser = segment)]
+    child: (String, Vec<String>),
+    /// The marker at the parent's origin, above the joint.
+    #[arg(long, value_name = "MARKER", default_value = "RGT")]
+    origin: String,
+    /// The marker at the medial end of the joint.
+    #[arg(long, value_name = "MARKER", default_value = "RMFE")]
+    medial: String,
+    /// The marker at the lateral end of the joint.
+    #[arg(long, value_name = "MARKER", default_value = "RLFE")]
+    lateral: String,
+    /// The joint is on the left side.
+    #[arg(long)]
+    left: bool,
+    /// The order of the rotations; zxy is that of Grood & Suntay.
+    #[arg(long, default_value = "zxy")]
+    order: EulerOrder,
+    /// The names of the rotations in that order.
+    #[arg(long, value_delimiter = ',', num_args = 3, default_value = "flexion,adduction,rotation")]
+    angles: Vec<String>,
+    /// What a marker at exactly 0 0 0 is; without it, it is missing where it is elsewhere in other frames.
+    #[arg(long, value_enum)]
+    zeros: Option<ZerosArgument>,
+    /// The model, a document; `-` is standard output.
+    #[arg(short, long, value_name = "M.toml")]
+    output: PathBuf,
+}
+
+/// Markers of a person who stands move by less, in metres.
+const STILL: f64 = 0.03;
+
+fn segment(text: &str) -> Result<(String, Vec<String>), String> {
+    let (name, markers) = text.split_once('=').ok_or("give SEGMENT=M1,M2,...")?;
+    let markers: Vec<String> =
+        markers.split(',').map(|m| m.trim().to_owned()).filter(|m| !m.is_empty()).collect();
+    match name.trim() {
+        "" => Err("there is no segment before `=`".to_owned()),
+        _ if markers.len() < 3 => Err("a segment needs three markers".to_owned()),
+        name => Ok((name.to_owned(), markers)),
+    }
+}
+
+impl Joint {
+    pub(super) fn run(self) -> Result<Outcome, Failure> {
+        if !output::is_standard(&self.output) && open::ending(&self.output) != "toml" {
+            let path = self.output.display();
+            let message = format!("{path}: the model is written as a document: end it in .toml");
+            return Err(Failure::new(message));
+        }
+        output::check_distinct(&[self.trial.as_path()], &[self.output.as_path()])?;
+        let read = open::recording_with(&self.trial, zeros(self.zeros))?;
+        let standing = warned(&self.trial, read);
+        let Ok(angles) = <[String; 3]>::try_from(self.angles.clone()) else {
+            return Err(Failure::new("--angles needs three names"));
+        };
+        let joint = FreeJoint {
+            name: self.name,
+            segments: [self.parent.0, self.child.0],
+            markers: [self.parent.1, self.child.1],
+            origin: self.origin,
+            ends: [self.medial, self.lateral],
+            left: self.left,
+            order: self.order,
+            angles,
+        };
+        let model = joint
+            .model(&standing)
+            .map_err(|error| Failure::new(format!("{}: {error}", self.trial.display())))?;
+        let unrest = joint.unrest(&standing);
+        if unrest > STILL {
+            let message = format!(
+                "warning: {}: markers are up to {:.0} mm from their means: the person does not stand still, and the model is \
+                 that of no moment",
+                self.trial.display(),
+                1e3 * unrest
+            );
+            say(&message);
+        }
+        output::write(&self.output, document::write(&model).as_bytes())?;
+        Ok(Outcome::Done)
+    }
+}

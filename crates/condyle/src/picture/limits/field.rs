@@ -1,0 +1,301 @@
+//! What a learned field reaches: the directions in which the bone may point with some twist, as a part of a sphere about its joint.
+//! Its shade tells how far the bone may twist there, as that of cones does, and so do lines with the twist in degrees: colour
+//! alone tells not everyone.
+
+use super::super::figure::Figure;
+use super::super::marks::{label, line};
+use super::cone::{Said, frame};
+use super::{OPACITY, value};
+use condyle_math::{Mat3, Quat, Vec3};
+use condyle_mesh::Patch;
+use condyle_model::component::FieldLimit;
+use condyle_model::evaluate::Bound;
+use condyle_model::limit::Limit;
+use condyle_model::limit::field::fibre;
+use condyle_model::{Law, SegmentId, Signal};
+use condyle_render::{Line, Scene, Surface, palette, shape};
+
+/// Corners are 2 degrees apart.
+const LEVEL: u32 = 5;
+const SHADES: usize = 16;
+/// Lines of equal twist are these degrees apart: the smallest with which there are at most [`MOST_LINES`].
+const STEPS: [f64; 4] = [15.0, 30.0, 60.0, 90.0];
+const MOST_LINES: usize = 7;
+
+/// Draws the reach of a field.
+pub(super) fn draw(figure: &Figure, bound: &Bound, law: &FieldLimit, scene: &mut Scene) {
+    let numbers: Vec<f64> = figure.pose.bounded(bound).collect();
+    let Some(now) = rotation(&numbers) else { return };
+    let Some((segment, frame)) = turned(figure, bound, now) else { return };
+    if !figure.is_signed(segment) {
+        return;
+    }
+    let centre = figure.joint(segment).translation;
+    let off = figure.far_end(segment) - centre;
+    let length = off.norm();
+    if !(length > 1e-6 && length.is_finite()) {
+        return;
+    }
+    // In the axes of the child that the limit speaks of.
+    let bone = (frame * now).transpose() * (off * length.recip());
+    let reach = Reach::of(law, &numbers, bone);
+    let radius = (0.45 * length).clamp(1.5 * figure.unit, 4.0 * figure.unit);
+    let place = |direction: Vec3| centre + frame * direction * radius;
+    scene.surfaces.extend(reach.shades(&place));
+    for edge in reach.edges() {
+        scene.lines.push(line(edge.iter().map(|v| place(*v)).collect(), 2.0, palette::LIMIT));
+    }
+    for (degrees, path) in reach.lines() {
+        let points: Vec<Vec3> = path.iter().map(|v| place(*v * 1.002)).collect();
+        label(points[points.len() / 2], &format!("{degrees:.0}°"), palette::TEXT, scene);
+        let thin = line(points, 1.0, palette::TEXT);
+        scene.lines.push(Line { opacity: 0.55, through: 0.15, ..thin });
+    }
+    let tip = place(now * bone);
+    scene.lines.push(value(centre, tip));
+    let mut mark = Surface::empty(palette::VALUE);
+    shape::add_ball(&mut mark, tip, 0.08 * figure.unit, (14, 10));
+    scene.surfaces.push(mark);
+}
+
+fn rotation(numbers: &[f64]) -> Option<Mat3> {
+    let &[x, y, z, w, ..] = numbers else { return None };
+    let q = Quat { x, y, z, w };
+    let length = q.dot(q);
+    (length.is_finite() && length > 1e-18).then(|| q.normalized().to_mat3())
+}
+
+/// The segment that is turned and the frame in the world in which it is: said by the segments that are measured, or found as that
+/// of a cone.
+fn turned(figure: &Figure, bound: &Bound, now: Mat3) -> Option<(SegmentId, Mat3)> {
+    let components = figure.model.components();
+    let component = &components[bound.component.index()];
+    if let Some(Signal::Output(id, _)) = component.inputs.first() {
+        let before = &components[id.index()];
+        if let (Law::RelativeOrientation(_), Some(Signal::Segment(segment))) =
+            (&before.law, before.inputs.first())
+        {
+            let reference = match before.inputs.get(1) {
+                Some(Signal::Segment(reference)) => Some(*reference),
+                _ => None,
+            };
+            return Some((*segment, figure.pose.frame(reference).linear));
+        }
+    }
+    let said = Said { rotation: &rotation, off: &|a, b| (b.transpose() * a).log().norm() };
+    frame(figure, bound, &said, now)
+}
+
+/// The directions that are reached, and how far the bone may twist there.
+struct Reach {
+    patch: Patch,
+    /// How much of the turn about the bone is allowed at each corner, in radians.
+    widths: Vec<f64>,
+}
+
+impl Reach {
+    /// By the row that the limit gives: what is drawn is what is enforced.
+    fn of(law: &FieldLimit, numbers: &[f64], bone: Vec3) -> Self {
+        let distance = |q: Quat| {
+            let mut asked = numbers.to_vec();
+            asked.iter_mut().zip(q.to_array()).for_each(|(number, c)| *number = c);
+            law.rows_at(&asked)[0].0
+        };
+        let patch = Patch::of(&|v| fibre(&distance, bone, v).deepest, LEVEL);
+        let widths = patch.corners.iter().map(|v| fibre(&distance, bone, *v).width).collect();
+        Self { patch, widths }
+    }
+
+    fn ends(&self) -> [f64; 2] {
+        let known = || self.widths.iter().copied();
+        [known().fold(f64::INFINITY, f64::min), known().fold(0.0, f64::max)]
+    }
+
+    /// The part of the sphere, a surface for each shade.
+    fn shades(&self, place: &dyn Fn(Vec3) -> Vec3) -> Vec<Surface> {
+        let [low, high] = self.ends();
+        let mut shades: Vec<Surface> = (0..SHADES)
+            .map(|shade| {
+                let share = shade as f64 / (SHADES - 1) as f64;
+                let mixed = [0, 1, 2].map(|i| {
+                    let [from, to] = [palette::LIMIT_LOW[i], palette::LIMIT[i]].map(f64::from);
+                    (from + (to - from) * share).round() as u8
+                });
+                Surface::empty(mixed).with_opacity(1.6 * OPACITY)
+            })
+            .collect();
+        let centre = place(Vec3::ZERO);
+        for triangle in &self.patch.triangles {
+            let at = triangle.map(|i| i as usize);
+            let width = at.iter().map(|i| self.widths[*i]).sum::<f64>() / 3.0;
+            let share = if high > low + 1e-9 { (width - low) / (high - low) } else { 1.0 };
+            let shade = (share * (SHADES - 1) as f64).round().clamp(0.0, (SHADES - 1) as f64);
+            let surface = &mut shades[shade as usize];
+            let corners = at.map(|i| {
+                let place = place(self.patch.corners[i]);
+                surface.corner(place, place - centre)
+            });
+            surface.triangles.push(corners);
+        }
+        shades.retain(|surface| !surface.triangles.is_empty());
+        shades
+    }
+
+    /// The boundary as closed lines.
+    fn edges(&self) -> Vec<Vec<Vec3>> {
+        let loops = self.patch.loops().into_iter();
+        loops
+            .map(|line| {
+                let around = line.iter().chain(line.first());
+                around.map(|i| self.patch.corners[*i as usize]).collect()
+            })
+            .collect()
+    }
+
+    /// Lines of equal twist, with it in degrees.
+    fn lines(&self) -> Vec<(f64, Vec<Vec3>)> {
+        let [low, high] = self.ends().map(f64::to_degrees);
+        let levels = |step: f64| {
+            (1..).map(move |n| step * f64::from(n)).skip_while(move |d| *d <= low).take_while(
+                // A line on the greatest twist itself is noise.
+                move |d| *d < high - 1.0,
+            )
+        };
+        let step = STEPS.into_iter().find(|step| levels(*step).count() <= MOST_LINES);
+        let mut lines = vec![];
+        for degrees in levels(step.unwrap_or(120.0)) {
+            for line in self.patch.contour(&self.widths, degrees.to_radians()) {
+                // Specks are left out.
+                let length: f64 = line.windows(2).map(|ends| (ends[1] - ends[0]).norm()).sum();
+                if length > 0.2 {
+                    lines.push((degrees, line));
+                }
+            }
+        }
+        lines
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::figure::tests::seen;
+    use super::*;
+    use crate::limits::{About, Cloud, Settings, learn};
+    use condyle_model::ModelBuilder;
+    use std::sync::Arc;
+
+    /// About z, then x, then y of the arm.
+    fn turned([z, x, y]: [f64; 3]) -> Quat {
+        let turn = Quat::from_axis_angle;
+        turn(Vec3::Z, z) * turn(Vec3::X, x) * turn(Vec3::Y, y)
+    }
+
+    /// Rotations of an arm whose twist depends on where it points: it swings by 70 degrees forward and 40 back, 50 to the sides.
+    fn limit() -> FieldLimit {
+        let mut take = vec![];
+        for i in -10..=10 {
+            for j in -10..=10 {
+                for k in -10..=10 {
+                    let [z, x] = [7.0 * f64::from(i), 5.0 * f64::from(j)];
+                    let z = if z < 0.0 { z * 4.0 / 7.0 } else { z };
+                    let twist = f64::from(k) * (5.0 - 0.03 * z);
+                    take.push(turned([z, x, twist].map(f64::to_radians)));
+                }
+            }
+        }
+        let cloud = Cloud::gather(&[&take], 0.0).expect("rotations");
+        let settings = Settings { nodes: 48, ..Settings::default() };
+        FieldLimit::new(Arc::new(learn(&cloud, &settings, About::default()).expect("settings")))
+    }
+
+    /// Points all along the drawn boundary, those between its corners too, are within 0.1 degrees of where the enforced limit
+    /// ends: across the boundary some twist is allowed 0.1 degrees inward, and none 0.1 degrees outward, by all twists in steps of a
+    /// third of a degree.
+    #[test]
+    fn the_drawn_boundary_is_the_enforced_one() {
+        let law = limit();
+        let bone = -Vec3::Y;
+        let reach = Reach::of(&law, &[0.0, 0.0, 0.0, 1.0], bone);
+        let allowed = |direction: Vec3| {
+            let across = bone.cross(direction);
+            let angle = across.norm().atan2(bone.dot(direction));
+            let swing = Quat::exp(across.normalized() * angle);
+            (0..1080).any(|i| {
+                let twist = Quat::from_axis_angle(bone, f64::from(i) / 3.0 * 1f64.to_radians());
+                law.rows_at(&(swing * twist).to_array())[0].0 >= 0.0
+            })
+        };
+        let edges = reach.edges();
+        assert!(!edges.is_empty());
+        let (mut count, mut wrong) = (0, 0);
+        for ends in edges.iter().flat_map(|edge| edge.windows(2)).step_by(5) {
+            let along = (ends[1] - ends[0]).normalized();
+            for share in [0.0, 0.25, 0.5, 0.75] {
+                let at = (ends[0] * (1.0 - share) + ends[1] * share).normalized();
+                let out = along.cross(at).normalized() * 0.1f64.to_radians();
+                count += 1;
+                wrong += usize::from(!allowed((at - out).normalized()));
+                wrong += usize::from(allowed((at + out).normalized()));
+            }
+        }
+        assert!(count > 100, "{count}");
+        assert_eq!(wrong, 0, "of {count}");
+    }
+
+    /// Twists are told by lines as well as by colour, and a line says what a search finds on it.
+    #[test]
+    fn lines_say_the_twist() {
+        let law = limit();
+        let reach = Reach::of(&law, &[0.0, 0.0, 0.0, 1.0], -Vec3::Y);
+        let lines = reach.lines();
+        assert!(lines.len() > 1);
+        let distance = |q: Quat| law.rows_at(&q.to_array())[0].0;
+        for (degrees, line) in &lines {
+            // A degree to either side of the line the twist is more and less than it says: near the boundary it falls steeply.
+            let middle = line.len() / 2;
+            let at = line[middle];
+            let along = line[(middle + 1).min(line.len() - 1)] - line[middle.saturating_sub(1)];
+            let across = along.cross(at).normalized() * 1f64.to_radians();
+            let width = |v: Vec3| fibre(&distance, -Vec3::Y, v.normalized()).width.to_degrees();
+            let sides = [width(at - across), width(at + across)];
+            let [low, high] = [sides[0].min(sides[1]), sides[0].max(sides[1])];
+            assert!(low < *degrees && *degrees < high, "{low} to {high} on the line of {degrees}");
+        }
+    }
+
+    /// A field of a ball joint and one between segments are drawn about the joint, where the bone points.
+    #[test]
+    fn a_field_is_drawn_where_the_bone_is() {
+        let law = limit();
+        let mut builder = ModelBuilder::new("arm");
+        let trunk = builder.segment("trunk", None);
+        let arm = builder.segment("arm", Some(trunk));
+        builder.place_joint(arm, Vec3::new(0.1, 0.4, 0.0));
+        builder.marker("elbow", Some(arm), Vec3::new(0.0, -0.3, 0.0));
+        let set = builder.joint_set("shoulder");
+        let turn = builder.coordinate(set, "turn", condyle_model::CoordinateKind::Orientation);
+        let legal = builder.component(set, "legal", Law::Field(law), vec![turn.into()]);
+        let ball =
+            builder.component(set, "ball", Law::Ball(condyle_model::component::Ball), vec![legal]);
+        builder.output(set, arm, ball);
+        let model = builder.build().expect("a model");
+        let q = turned([0.4, -0.2, 0.3]);
+        seen(&model, &q.to_array(), |figure| {
+            let mut scene = Scene::default();
+            super::super::limits(figure, false, &mut scene);
+            assert!(!scene.surfaces.is_empty() && !scene.labels.is_empty());
+            let joint = Vec3::new(0.1, 0.4, 0.0);
+            let value = scene.lines.iter().find(|line| line.colour == palette::VALUE).unwrap();
+            let tip = Vec3::from(value.points[1]) - joint;
+            let arm = q.to_mat3() * -Vec3::Y;
+            assert!((tip.normalized() - arm).norm() < 1e-9);
+            // All of it on one sphere about the joint.
+            let edges = scene.lines.iter().filter(|line| line.colour == palette::LIMIT);
+            let points = edges.flat_map(|line| &line.points);
+            assert!(points.clone().count() > 50);
+            for point in points {
+                assert!(((Vec3::from(*point) - joint).norm() - tip.norm()).abs() < 1e-9);
+            }
+        });
+    }
+}

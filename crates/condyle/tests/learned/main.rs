@@ -1,0 +1,4 @@
+//! Laws learned from markers that are generated: machines whose coefficients are known, and a knee.
+
+mod knee;
+mod machines;
