@@ -303,7 +303,7 @@ fn measure(
             missing.dedup();
             let why = match missing.is_empty() {
                 true => "its markers are in one place, or it has none".to_owned(),
-                false => listed(&missing),
+                false => missing.join(", "),
             };
             let message = format!("measurement `{}` is not used: {why}", measurement.name);
             let said = Diagnostic::warning("scale/measurement", message);
