@@ -53,7 +53,7 @@ fn what_is_wrong_is_said_with_its_place() {
         (
             "\"kind\":\"shear\"",
             "\"kind\":\"sheer\"",
-            "components[32].kind: unknown `sheer` (did you mean `shear`?)",
+            "components[33].kind: unknown `sheer` (did you mean `shear`?)",
         ),
         (
             "\"coordinate\":\"line/reach\"",
