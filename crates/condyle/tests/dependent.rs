@@ -102,7 +102,7 @@ at = [0, -0.25, 0]
 kind = "orientation"
 [joint_set.wrist.component.held.field]
 orientation = "wrist"
-driver = "flexion"
+driver = "elbow.flexion"
 file = "wrist.toml"
 [joint_set.wrist.component.turn.ball]
 orientation = "held"
