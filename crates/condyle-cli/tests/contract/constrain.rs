@@ -147,10 +147,15 @@ fn a_foreign_skeleton_comes_back_with_only_its_bad_joint_changed() {
 /// Rotations spread evenly over the ball of 60 degrees, but for one of 25 about a turn of 25 degrees about x.
 fn rotations() -> String {
     let mut text = "qx,qy,qz,qw\n".to_owned();
-    // A lattice in the vector part of quaternions, 5 degrees apart, in an order that is no motion.
-    for n in 0..21 * 21 * 21 {
-        let i = n * 4001 % (21 * 21 * 21);
-        let at = [i % 21, i / 21 % 21, i / 441].map(|n: i32| f64::from(n - 10) * 0.05);
+    // Drawn in the vector part of quaternions.
+    let mut state = 14u64;
+    let mut part = || {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    };
+    for _ in 0..12_000 {
+        let at = [part(), part(), part()];
         let size = at.iter().map(|v| v * v).sum::<f64>().sqrt();
         let w = (1.0 - size * size).max(0.0).sqrt();
         let half = 12.5f64.to_radians();
