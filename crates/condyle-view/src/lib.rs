@@ -19,5 +19,6 @@ mod export;
 mod session;
 
 pub use bundle::{Asset, PAGE, asset, assets};
+pub use condyle_wasm::Shown;
 pub use export::exported;
-pub use session::{Mode, Session, Shown};
+pub use session::{Mode, Session, shown};
