@@ -138,9 +138,14 @@ impl Cloud {
                 let lift = if axis < 2 && end == 0.0 { -2.0 } else { 0.0 };
                 write(canvas, &format!("{value:.0}"), [x + dx, y + dy + lift], part);
             }
-            let [x, y] = at(axis, 0.5);
-            let down = if axis == 2 { 0.0 } else { 10.0 };
-            write(canvas, &self.axes[axis], [x + 2.0 * dx, y + dy + down], part);
+            if axis == 2 {
+                // Above its upper end.
+                let [x, y] = at(axis, 1.0);
+                write(canvas, &self.axes[axis], [x - 24.0, y - 24.0], 0.0);
+            } else {
+                let [x, y] = at(axis, 0.5);
+                write(canvas, &self.axes[axis], [x + 2.0 * dx, y + dy + 10.0], part);
+            }
         }
         write(canvas, &self.title, [10.0, 8.0], 0.0);
     }

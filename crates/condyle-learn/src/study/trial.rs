@@ -37,8 +37,6 @@ pub struct Trials {
     pub unseen: [usize; 2],
     /// The standard deviation of white noise on each coordinate of each marker, in metres.
     pub noise: f64,
-    /// Every so many frames of a crouch one is kept: 1 for all.
-    pub every: usize,
     /// What all that is random comes from.
     pub seed: u64,
 }
@@ -47,7 +45,7 @@ impl Default for Trials {
     /// Those of Pronost et al. 2010: ten gaits and five crouches of six varieties, 30 000 frames; ten gaits and ten crouches beside them.
     /// Noise of 0.5 mm, as cameras of a laboratory have it (recalled).
     fn default() -> Self {
-        Self { gaits: 10, crouches: 5, unseen: [10, 10], noise: 0.5e-3, every: 1, seed: 1 }
+        Self { gaits: 10, crouches: 5, unseen: [10, 10], noise: 0.5e-3, seed: 1 }
     }
 }
 
@@ -102,7 +100,6 @@ impl Trials {
         let mut shaken = Dice::of(self.seed ^ 0xa5a5, &words);
         let wander = Tissue::wander(&mut dice);
         let knee = person.knee.made();
-        let every = if matches!(kind, Kind::Crouch(_)) { self.every.max(1) } else { 1 };
         let all = moments(kind, person.depth, person.thigh, &mut dice);
         let parts = all.len().max(1) as f64;
         let rest = person.joint.rigid_inverse();
@@ -117,13 +114,13 @@ impl Trials {
             kind,
             recording: Recording {
                 labels: Person::LABELS.map(str::to_owned).to_vec(),
-                rate: RATE / every as f64,
+                rate: RATE,
                 units: LengthUnit::Millimetre,
                 ..Recording::default()
             },
             truth: vec![],
         };
-        for (frame, moment) in all.iter().enumerate().step_by(every) {
+        for (frame, moment) in all.iter().enumerate() {
             let thigh = hung(moment, person.places[0]);
             // The shank's own frame coincides with the thigh's in extension.
             let shank_in_thigh = person.joint * knee.moved(moment.angles) * rest;

@@ -2,3 +2,4 @@
 
 mod knee;
 mod machines;
+mod study;

@@ -28,6 +28,9 @@ pub(super) struct Study {
     /// The standard deviation of the noise of markers on each axis, in mm.
     #[arg(long, value_name = "MM", default_value_t = 0.5, value_parser = noise)]
     noise: f64,
+    /// The cut-off of the low-pass that recordings go through before they are tracked, in Hz; 0 for none.
+    #[arg(long, value_name = "HZ", default_value_t = 6.0, value_parser = hertz)]
+    low_pass: f64,
     /// Number of solver threads; all cores by default.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -39,6 +42,11 @@ pub(super) struct Study {
     trials: bool,
 }
 
+fn hertz(text: &str) -> Result<f64, String> {
+    let hertz = text.parse().ok().filter(|hz: &f64| *hz == 0.0 || (0.5..=49.0).contains(hz));
+    hertz.ok_or_else(|| "give 0.5 to 49 Hz, or 0 for none".to_owned())
+}
+
 fn noise(text: &str) -> Result<f64, String> {
     let mm = text.parse().ok().filter(|mm: &f64| (0.0..=50.0).contains(mm));
     mm.ok_or_else(|| "give millimetres, from 0 to 50".to_owned())
@@ -48,11 +56,14 @@ impl Study {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         if output::is_stream(&self.output) || self.output.is_file() {
             let path = self.output.display();
-            return Err(Failure::new(format!("{path}: the results are several files: give a folder")));
+            return Err(Failure::new(format!(
+                "{path}: the results are several files: give a folder"
+            )));
         }
         let mut plan = Plan { people: usize::from(self.subjects), ..Plan::default() };
         plan.trials.seed = self.seed;
         plan.trials.noise = 1e-3 * self.noise;
+        plan.low_pass = (self.low_pass > 0.0).then_some(self.low_pass);
         plan.threads = self.threads.map(usize::from);
         if self.quick {
             plan = plan.quick();

@@ -34,7 +34,8 @@ pub use tables::tables;
 pub use unseen::Followed;
 
 use condyle_diagnostics::Error;
-use condyle_learn::study::{Person, Skin, Trials};
+use condyle_learn::study::{Kind, Person, Skin, Take, Trials};
+use condyle_motion::upkeep;
 
 /// What is studied.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,13 +44,17 @@ pub struct Plan {
     pub people: usize,
     /// Their trials.
     pub trials: Trials,
+    /// The cut-off of the low-pass that recordings go through before they are tracked, in hertz, as laboratories have it; `None` for none.
+    pub low_pass: Option<f64>,
+    /// Every so many frames of a crouch one is tracked: 1 for all.
+    pub every: usize,
     /// Solver threads; `None` for as many as there are cores. Results do not depend on them.
     pub threads: Option<usize>,
 }
 
 impl Default for Plan {
     fn default() -> Self {
-        Self { people: 6, trials: Trials::default(), threads: None }
+        Self { people: 6, trials: Trials::default(), low_pass: Some(6.0), every: 1, threads: None }
     }
 }
 
@@ -61,8 +66,33 @@ impl Plan {
         self.trials.gaits = 3;
         self.trials.crouches = 2;
         self.trials.unseen = [2, 2];
-        self.trials.every = 8;
+        self.every = 8;
         self
+    }
+}
+
+impl Plan {
+    /// A trial as it is tracked: filtered, and of crouches every so many frames.
+    fn take(
+        &self,
+        person: &Person,
+        (kind, number): (Kind, usize),
+        unseen: bool,
+        skin: Skin,
+    ) -> Result<Take, Error> {
+        let mut take = self.trials.take(person, kind, number, unseen, skin);
+        let upkeep = upkeep::Plan { low_pass: self.low_pass, ..upkeep::Plan::default() };
+        upkeep.recording(&mut take.recording)?;
+        let every = if kind == Kind::Gait { 1 } else { self.every.max(1) };
+        if every > 1 {
+            let width = take.recording.labels.len();
+            let frames = take.recording.positions.chunks_exact(width).step_by(every);
+            take.recording.positions = frames.flatten().copied().collect();
+            take.recording.times = take.recording.times.iter().copied().step_by(every).collect();
+            take.recording.rate /= every as f64;
+            take.truth = take.truth.into_iter().step_by(every).collect();
+        }
+        Ok(take)
     }
 }
 

@@ -13,7 +13,7 @@ pub fn report(studied: &Studied, picture: Option<&str>) -> String {
     let _ = writeln!(
         text,
         "{} people, each with {} gaits and {} crouches ({} angles between the feet, {} times) to learn from, {} gaits and {} crouches that no law has seen; \
-         seven skin markers at {} Hz with noise of {} mm on each coordinate; seed {}. Each trial twice: with markers that are fixed to bones, and with skin that moves.\n",
+         seven skin markers at 100 Hz with noise of {} mm on each coordinate, {}; seed {}. Each trial twice: with markers that are fixed to bones, and with skin that moves.\n",
         studied.people.len(),
         trials.gaits,
         6 * trials.crouches,
@@ -21,16 +21,16 @@ pub fn report(studied: &Studied, picture: Option<&str>) -> String {
         trials.crouches,
         trials.unseen[0],
         trials.unseen[1],
-        100.0 / trials.every.max(1) as f64,
         1e3 * trials.noise,
+        match studied.plan.low_pass {
+            Some(hertz) => format!("filtered at {hertz} Hz before they are tracked"),
+            None => "not filtered".to_owned(),
+        },
         trials.seed
     );
-    if trials.every > 1 {
-        let _ = writeln!(
-            text,
-            "Of crouches every {}th frame is used; gaits are at 100 Hz.\n",
-            trials.every
-        );
+    if studied.plan.every > 1 {
+        let every = studied.plan.every;
+        let _ = writeln!(text, "Of crouches one frame in {every} is tracked.\n");
     }
     for sheet in tables(studied) {
         text.push_str(&sheet.markdown());

@@ -20,6 +20,9 @@ pub struct Learned {
     pub laws: Laws,
     /// The linear laws nearest to the truth on the same frames.
     pub truth: Vec<BestLinear>,
+    /// The slope of each place over flexion alone, whatever the other angles do meanwhile, as tracked and as it is true, in
+    /// metres per radian: of a knee whose angles all follow flexion that alone is determined.
+    pub along: [[f64; 3]; 2],
     /// The mean over frames of the distance between the centre that tracking found and that of the laws, in metres (Table 2 of
     /// Pronost et al. 2010).
     pub deviation: f64,
@@ -80,7 +83,7 @@ pub(super) fn run(
         let (mut compared, mut left, mut bad_frames) = (0usize, 0.0, 0);
         let wanted = trials.wanted(false);
         for (kind, number) in wanted.into_iter().filter(|(kind, _)| (*kind == Kind::Gait) == gait) {
-            let take = trials.take(person, kind, number, false, skin);
+            let take = plan.take(person, (kind, number), false, skin)?;
             let (rows, bad, rms) =
                 tracked(&free, &coordinates, &take.recording, &request, &mut |_, _| {})?;
             let frames = rows.len() / columns.len();
@@ -100,7 +103,14 @@ pub(super) fn run(
         }
         let laws = learn(&samples, &[], &[0, 1, 2], &[3, 4, 5], &Settings::default())?;
         let frames = samples.frames();
+        let along = |rows: &mut dyn Iterator<Item = &[f64]>| {
+            let rows: Vec<&[f64]> = rows.collect();
+            [3, 4, 5].map(|place| slope(&rows, place))
+        };
+        let tracked_rows = samples.trials.iter();
+        let mut tracked_rows = tracked_rows.flat_map(|t| t.values.chunks_exact(columns.len()));
         let learned = Learned {
+            along: [along(&mut tracked_rows), along(&mut truth.iter().map(|row| &row[..]))],
             truth: (0..3).map(|place| BestLinear::of(&truth, place)).collect(),
             deviation: mean(&deviations(&samples, &laws, None)),
             deviation_by_variety: by_variety(&samples, &laws),
@@ -160,6 +170,15 @@ fn by_variety(samples: &Samples, laws: &Laws) -> Option<f64> {
     let all: Vec<f64> =
         names.iter().flat_map(|name| deviations(samples, laws, Some(name))).collect();
     (names.len() > 1 && !all.is_empty()).then(|| mean(&all))
+}
+
+/// The slope of a column over the first.
+fn slope(rows: &[&[f64]], column: usize) -> f64 {
+    let n = rows.len().max(1) as f64;
+    let mean = |c: usize| rows.iter().map(|row| row[c]).sum::<f64>() / n;
+    let (x, y) = (mean(0), mean(column));
+    let both: f64 = rows.iter().map(|row| (row[0] - x) * (row[column] - y)).sum();
+    both / rows.iter().map(|row| (row[0] - x).powi(2)).sum::<f64>()
 }
 
 fn mean(values: &[f64]) -> f64 {

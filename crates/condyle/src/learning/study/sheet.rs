@@ -29,11 +29,12 @@ impl Cell {
         match self {
             Self::Text(text) => text.replace('|', "\\|"),
             Self::Number(x, _) | Self::Spread(x, ..) if !x.is_finite() => "-".to_owned(),
-            Self::Number(x, digits) => format!("{x:.digits$}"),
-            Self::Spread(mean, sd, digits) => format!("{mean:.digits$} ± {sd:.digits$}"),
+            Self::Number(x, digits) => fixed(*x, *digits),
+            Self::Spread(mean, sd, digits) => format!("{} ± {sd:.digits$}", fixed(*mean, *digits)),
             Self::Estimate { value, interval: [low, high], truth } => {
-                let truth = truth.map_or("-".to_owned(), |t| format!("{t:.4}"));
-                format!("{value:.4} [{low:.4}, {high:.4}] ({truth})")
+                let [value, low, high] = [value, low, high].map(|x| fixed(*x, 4));
+                let truth = truth.map_or("-".to_owned(), |t| fixed(t, 4));
+                format!("{value} [{low}, {high}] ({truth})")
             }
             Self::Empty => String::new(),
         }
@@ -63,6 +64,15 @@ impl Cell {
             Self::Estimate { .. } => &["", " low", " high", " truth"],
             _ => &[""],
         }
+    }
+}
+
+/// A number with digits, without the sign of a zero.
+fn fixed(x: f64, digits: usize) -> String {
+    let text = format!("{x:.digits$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.bytes().all(|b| b == b'0' || b == b'.') => rest.to_owned(),
+        _ => text,
     }
 }
 
@@ -111,7 +121,8 @@ impl Sheet {
     /// ```
     #[must_use]
     pub fn markdown(&self) -> String {
-        let mut text = format!("## {}\n\n| {} |\n|", self.title, self.head.join(" | "));
+        let head: Vec<String> = self.head.iter().map(|h| h.replace('|', "\\|")).collect();
+        let mut text = format!("## {}\n\n| {} |\n|", self.title, head.join(" | "));
         for _ in &self.head {
             text.push_str(" --- |");
         }

@@ -77,7 +77,7 @@ pub(super) fn follow(
         };
         let mut followed: Vec<Followed> = empty(true).chain(empty(false)).collect();
         for (kind, number) in plan.trials.wanted(true) {
-            let take = plan.trials.take(&people[run.person], kind, number, true, run.skin);
+            let take = plan.take(&people[run.person], (kind, number), true, run.skin)?;
             let first = if kind == Kind::Gait { 0 } else { knees.len() };
             for (place, (_, _, model)) in knees.iter().enumerate() {
                 let tracking = track(model, &take.recording, &request, &mut |_, _| {})?;
