@@ -37,6 +37,7 @@ const WALKER: [[f64; 4]; 13] = [
 ];
 
 /// The angle about z in radians, and where the tibia then is forward in the femur, in metres.
+#[allow(clippy::approx_constant, reason = "the digits of the source")]
 const FORWARD: [(f64, f64); 12] = [
     (-2.0944, -0.0032),
     (-1.74533, 0.00179),
@@ -52,6 +53,7 @@ const FORWARD: [(f64, f64); 12] = [
     (2.0944, -0.00525),
 ];
 /// The same upward.
+#[allow(clippy::approx_constant, reason = "the digits of the source")]
 const UPWARD: [(f64, f64); 7] = [
     (-2.0944, -0.4226),
     (-1.22173, -0.4082),

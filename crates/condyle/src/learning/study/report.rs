@@ -35,14 +35,10 @@ pub fn report(studied: &Studied, picture: Option<&str>) -> String {
     for sheet in tables(studied) {
         text.push_str(&sheet.markdown());
         text.push('\n');
-        if sheet.name == "table2" {
-            if let Some(picture) = picture {
-                let _ = writeln!(text, "## Figure 3: deviation over the angles of crouches\n");
-                let _ = writeln!(
-                    text,
-                    "![Deviation of the centre from the law in the space of the three angles, six people, with artefact]({picture})\n"
-                );
-            }
+        if let (true, Some(picture)) = (sheet.name == "table2", picture) {
+            let words = "Deviation of the centre from the law over the three angles, with artefact";
+            let _ = writeln!(text, "## Figure 3: deviation over the angles of crouches\n");
+            let _ = writeln!(text, "![{words}]({picture})\n");
         }
     }
     text.push_str("## What is wrong with the printed numbers\n\n");
