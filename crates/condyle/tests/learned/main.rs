@@ -3,3 +3,4 @@
 mod functional;
 mod knee;
 mod machines;
+mod study;
