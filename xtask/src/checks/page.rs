@@ -151,7 +151,8 @@ mod tests {
     fn built() -> Workspace {
         let mut workspace = Workspace::new();
         for source in SOURCES {
-            let name = if source.ends_with("src") { format!("{source}/a.ts") } else { source.into() };
+            let name =
+                if source.ends_with("src") { format!("{source}/a.ts") } else { source.into() };
             workspace = workspace.file(&name, "one\n");
         }
         for name in BUILT {
