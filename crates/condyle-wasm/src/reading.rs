@@ -26,23 +26,14 @@ pub enum Given {
 /// # Errors
 /// Everything that is wrong, as JSON.
 pub fn read(model: Option<&Model>, name: &str, bytes: &[u8]) -> Result<Given, Fault> {
-    if bytes.is_empty() && shipped::text(name).is_some() {
-        let read = shipped::read(name).map_err(|error| sentence(error.to_string()))?;
-        return Ok(alone(read.value.model, &read.warnings));
+    if let Some(text) = shipped::text(name).filter(|_| bytes.is_empty()) {
+        return documented(text);
     }
     let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_lowercase();
     let needed = || model.ok_or_else(|| sentence("give a model first"));
     let wrong = |error: Error| fault(&error);
     match &ending[..] {
-        "toml" => {
-            let text = std::str::from_utf8(bytes).map_err(|error| sentence(error.to_string()))?;
-            let mut include = |name: &str| {
-                let own = shipped::included(name).map(str::to_owned);
-                own.map_err(|_| format!("`{name}` is another file, which a page cannot open"))
-            };
-            let read = document::read(text, &mut include).map_err(wrong)?;
-            Ok(alone(read.value.model, &read.warnings))
-        }
+        "toml" => documented(std::str::from_utf8(bytes).map_err(|e| sentence(e.to_string()))?),
         "json" if is_model(bytes) => {
             let read = exchange::read(bytes).map_err(wrong)?;
             Ok(alone(read.value, &read.warnings))
@@ -78,6 +69,16 @@ pub fn read(model: Option<&Model>, name: &str, bytes: &[u8]) -> Result<Given, Fa
              `condyle view {name}` reads all that condyle does"
         ))),
     }
+}
+
+/// A model document; it may include the texts of shipped ones.
+fn documented(text: &str) -> Result<Given, Fault> {
+    let mut include = |name: &str| {
+        let own = shipped::included(name).map(str::to_owned);
+        own.map_err(|_| format!("`{name}` is another file, which a page cannot open"))
+    };
+    let read = document::read(text, &mut include).map_err(|error| fault(&error))?;
+    Ok(alone(read.value.model, &read.warnings))
 }
 
 /// Whether JSON is a resolved model, not poses.
