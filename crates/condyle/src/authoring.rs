@@ -40,6 +40,8 @@ use std::path::{Path, PathBuf};
 
 /// How many edits can be undone.
 const MOST: usize = 1000;
+/// How far two values are apart that are the same, relative to them.
+const SAME: f64 = 1e-12;
 
 /// What is wrong with a text, as it is shown to its author.
 #[derive(Clone, Debug, PartialEq)]
@@ -120,11 +122,39 @@ pub struct Written {
 /// An edit that can be undone.
 #[derive(Clone, Debug)]
 struct Past {
+    files: Vec<Turned>,
+    line: usize,
+}
+
+/// A file with other bytes than before.
+#[derive(Clone, Debug)]
+struct Turned {
     file: PathBuf,
     /// What was in it; `None` if it was not there.
     before: Option<String>,
     after: String,
-    line: usize,
+}
+
+impl Turned {
+    fn reversed(&self) -> Self {
+        let before = Some(self.after.clone());
+        Self { file: self.file.clone(), before, after: self.before.clone().unwrap_or_default() }
+    }
+}
+
+/// Writes files; if one cannot be written, those before it get back what they had.
+fn write_all(files: &[Turned]) -> Result<(), AuthoringError> {
+    for (index, Turned { file, before, after }) in files.iter().enumerate() {
+        let Err(error) = whole::write(file, after.as_bytes(), before.is_none()) else { continue };
+        for Turned { file, before, .. } in files.iter().take(index) {
+            if let Some(before) = before {
+                // The first error is the one to tell.
+                let _ = whole::write(file, before.as_bytes(), false);
+            }
+        }
+        return Err(AuthoringError::Io(file.clone(), error));
+    }
+    Ok(())
 }
 
 /// A model document that is edited in its file.
@@ -252,7 +282,8 @@ impl Authoring {
         let mut sentence = String::new();
         if mirrored {
             let (this, that) = (shown(path), shown(&editable.path));
-            sentence.push_str(&format!("`{this}` is the mirror image of `{that}`, which changes: "));
+            sentence
+                .push_str(&format!("`{this}` is the mirror image of `{that}`, which changes: "));
         }
         if let Some(name) = &self.shipped {
             let file = self.path.display();
@@ -272,9 +303,44 @@ impl Authoring {
         value: f64,
         way: Option<WayKind>,
     ) -> Result<Written, AuthoringError> {
+        self.set_all(&[(path.to_vec(), value)], way)
+    }
+
+    /// Gives several numbers other values at once, such as those of a point; numbers that have these values already
+    /// are left as they are. All of it is one edit to undo, and is told by its first change.
+    ///
+    /// # Errors
+    /// [`AuthoringError`]: nothing was written.
+    pub fn set_all(
+        &mut self,
+        values: &[(Vec<Step>, f64)],
+        way: Option<WayKind>,
+    ) -> Result<Written, AuthoringError> {
         self.check()?;
-        let edited = self.editing.set(path, value, way).map_err(|why| self.refused(why))?;
-        self.write(edited)
+        let mut all: Option<Edited> = None;
+        for (path, value) in values {
+            let now = all.as_ref().map_or(&self.editing, |edited| &edited.next);
+            let found = now.find(path);
+            let same = found.is_some_and(|found| (found.value - value).abs() <= SAME * value.abs());
+            if same && values.len() > 1 {
+                continue;
+            }
+            // What the first of them copied into the document is a plain number there.
+            let offered = |kind: &WayKind| {
+                found.is_none_or(|found| found.ways.iter().any(|way| way.kind == *kind))
+            };
+            let way = if all.is_some() { way.filter(offered) } else { way };
+            let edited = now.set(path, *value, way).map_err(|why| self.refused(why))?;
+            all = Some(match all.take() {
+                None => edited,
+                Some(mut before) => {
+                    before.mirrored.extend(edited.mirrored);
+                    Edited { next: edited.next, ..before }
+                }
+            });
+        }
+        let nothing = || AuthoringError::Impossible("these are the values already".to_owned());
+        self.write(all.ok_or_else(nothing)?)
     }
 
     /// Gives a key of the document itself a value as TOML writes it, such as a wire of a component.
@@ -332,27 +398,28 @@ impl Authoring {
     }
 
     fn write(&mut self, edited: Edited) -> Result<Written, AuthoringError> {
-        let change = edited.change;
-        let file = self.file(&change.file);
-        let after = edited.next.source(&change.file).map_or("", |source| &source.text).to_owned();
-        let own = change.file.is_empty();
-        let before = match own && !self.is_file() {
-            true => None,
-            false => self.editing.source(&change.file).map(|source| source.text.clone()),
-        };
-        let io = |error| AuthoringError::Io(file.clone(), error);
-        whole::write(&file, after.as_bytes(), before.is_none()).map_err(io)?;
-        self.editing = edited.next;
-        if own {
-            self.shipped = None;
+        let mut files = vec![];
+        for source in edited.next.sources() {
+            let own = source.name.is_empty();
+            let old = self.editing.source(&source.name).map(|source| source.text.clone());
+            let absent = own && !self.is_file();
+            if absent || old.as_ref() != Some(&source.text) {
+                let before = if absent { None } else { old };
+                let (file, after) = (self.file(&source.name), source.text.clone());
+                files.push(Turned { file, before, after });
+            }
         }
+        write_all(&files)?;
+        self.editing = edited.next;
+        self.shipped = None;
         if self.done.len() >= MOST {
             self.done.remove(0);
         }
-        self.done.push(Past { file: file.clone(), before, after, line: edited.line });
+        let (change, line) = (edited.change, edited.line);
+        self.done.push(Past { files, line });
         self.undone.clear();
-        let (old, new, line) = (change.old, change.new, edited.line);
-        Ok(Written { file, line, old, new, mirrored: edited.mirrored })
+        let file = self.file(&change.file);
+        Ok(Written { file, line, old: change.old, new: change.new, mirrored: edited.mirrored })
     }
 
     /// Whether there is an edit to undo, and one to do again.
@@ -370,13 +437,14 @@ impl Authoring {
         let Some(past) = self.done.last().cloned() else {
             return Err(AuthoringError::Impossible("there is nothing to undo".to_owned()));
         };
-        let before = match &past.before {
-            Some(before) => before.clone(),
-            None => self.unchanged_text(),
-        };
-        let written = self.turn(&past.file, &past.after, &before, past.line)?;
+        let mut past = past;
+        for turned in &mut past.files {
+            turned.before.get_or_insert_with(|| self.unchanged_text());
+        }
+        let back = past.files.iter().map(Turned::reversed).collect();
+        let written = self.turn(back, past.line)?;
         self.done.pop();
-        self.undone.push(Past { before: Some(before), ..past });
+        self.undone.push(past);
         Ok(written)
     }
 
@@ -388,8 +456,7 @@ impl Authoring {
         let Some(past) = self.undone.last().cloned() else {
             return Err(AuthoringError::Impossible("there is nothing to do again".to_owned()));
         };
-        let before = past.before.clone().unwrap_or_default();
-        let written = self.turn(&past.file, &before, &past.after, past.line)?;
+        let written = self.turn(past.files.clone(), past.line)?;
         self.undone.pop();
         self.done.push(past);
         Ok(written)
@@ -401,29 +468,25 @@ impl Authoring {
         including(wanted, shipped::text(wanted).unwrap_or_default())
     }
 
-    /// Writes other bytes into a file that has these.
-    fn turn(
-        &mut self,
-        file: &Path,
-        from: &str,
-        to: &str,
-        line: usize,
-    ) -> Result<Written, AuthoringError> {
-        let io = |error| AuthoringError::Io(file.to_owned(), error);
-        if std::fs::read(file).map_err(io)? != from.as_bytes() {
-            return Err(AuthoringError::Changed(file.to_owned()));
-        }
-        whole::write(file, to.as_bytes(), false).map_err(io)?;
-        match self.reload() {
-            Ok(_) => {}
-            Err(fault) => {
-                // An included text was changed meanwhile: back to what could be read.
-                whole::write(file, from.as_bytes(), false).map_err(io)?;
-                return Err(AuthoringError::Fault(fault));
+    /// Writes other bytes into files that have these.
+    fn turn(&mut self, files: Vec<Turned>, line: usize) -> Result<Written, AuthoringError> {
+        for Turned { file, before, .. } in &files {
+            let found = std::fs::read(file).map_err(|e| AuthoringError::Io(file.clone(), e))?;
+            if Some(found.as_slice()) != before.as_ref().map(|text| text.as_bytes()) {
+                return Err(AuthoringError::Changed(file.clone()));
             }
         }
-        let (old, new) = (from.to_owned(), to.to_owned());
-        Ok(Written { file: file.to_owned(), line, old, new, mirrored: vec![] })
+        write_all(&files)?;
+        if let Err(fault) = self.reload() {
+            // An included text was changed meanwhile: back to what was there.
+            write_all(&files.iter().map(Turned::reversed).collect::<Vec<_>>())?;
+            return Err(AuthoringError::Fault(fault));
+        }
+        let (mut file, mut old, mut new) = (self.path.clone(), String::new(), String::new());
+        if let Some(first) = files.into_iter().next() {
+            (file, old, new) = (first.file, first.before.unwrap_or_default(), first.after);
+        }
+        Ok(Written { file, line, old, new, mirrored: vec![] })
     }
 
     /// Reads the files anew; whether any of them changed. After a fault the document stays as it was read before.
@@ -441,8 +504,7 @@ impl Authoring {
             })?,
             false => self.editing.text().to_owned(),
         };
-        let next =
-            read(&self.path, &text).map_err(|error| Fault::of(&self.path, &text, &error))?;
+        let next = read(&self.path, &text).map_err(|error| Fault::of(&self.path, &text, &error))?;
         let changed = next.sources() != self.editing.sources();
         if changed {
             self.editing = next;

@@ -15,6 +15,7 @@ mod render;
 mod scale;
 mod track;
 mod upkeep;
+mod view;
 
 use crate::failure::Failure;
 use clap::builder::PossibleValuesParser;
@@ -93,6 +94,8 @@ enum Command {
     Pose(pose::Pose),
     /// Draw a model, or frames of its motion, as a PNG.
     Render(render::Render),
+    /// Show a model and its motions in the browser, and edit it there.
+    View(view::View),
     /// Compute the motion of a model that follows recorded markers.
     Track(track::Track),
     /// Scale a model to the person of a static trial.
@@ -196,6 +199,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
         Command::Fk(command) => command.run(),
         Command::Pose(command) => command.run(),
         Command::Render(command) => command.run(),
+        Command::View(command) => command.run(),
         Command::Track(command) => command.run(),
         Command::Scale(command) => command.run(),
         Command::Learn(command) => command.run(),

@@ -222,7 +222,8 @@ pub(super) fn ends(text: &str) -> std::collections::HashMap<usize, usize> {
         return ends;
     }
     let (table, _) = DeTable::parse_recoverable(text);
-    let mut open: Vec<&toml::Spanned<DeValue<'_>>> = table.get_ref().iter().map(|(_, v)| v).collect();
+    let mut open: Vec<&toml::Spanned<DeValue<'_>>> =
+        table.get_ref().iter().map(|(_, v)| v).collect();
     while let Some(value) = open.pop() {
         ends.insert(value.span().start, value.span().end);
         match value.get_ref() {
@@ -236,10 +237,7 @@ pub(super) fn ends(text: &str) -> std::collections::HashMap<usize, usize> {
 
 /// The table at a path of keys, if it is there.
 #[cfg(feature = "edit")]
-pub(super) fn own_tables<'t, 'v>(
-    top: &'t DeTable<'v>,
-    path: &[String],
-) -> Option<&'t DeTable<'v>> {
+pub(super) fn own_tables<'t, 'v>(top: &'t DeTable<'v>, path: &[String]) -> Option<&'t DeTable<'v>> {
     let mut here = top;
     for key in path {
         here = match here.get(key.as_str())?.get_ref() {

@@ -85,7 +85,8 @@ fn check(name: &str, editing: &Editing, editable: &Editable, way: WayKind) -> bo
     }
     let text = toml::to_string(&own).unwrap();
     let changed = edited.change.file.as_str();
-    let mut include = |wanted: &str| if wanted == changed { Ok(text.clone()) } else { part(wanted) };
+    let mut include =
+        |wanted: &str| if wanted == changed { Ok(text.clone()) } else { part(wanted) };
     let root = if changed.is_empty() { &text } else { editing.text() };
     let oracle = document::read(root, &mut include).unwrap_or_else(|e| panic!("{}: {e}", told()));
     for mode in [Mode::Posed, Mode::Open] {
@@ -147,7 +148,14 @@ fn each_kind_of_number_of_shipped_models_changes_alone() {
     println!("{changed} numbers changed, {refused} refused");
     // Refused are such as whole numbers, and directions whose length is 1 within few digits.
     assert!(changed > 500 && refused * 10 < changed, "{changed} changed, {refused} refused");
-    for way in [WayKind::Here, WayKind::File, WayKind::Row, WayKind::Template, WayKind::Factor, WayKind::Constant] {
+    for way in [
+        WayKind::Here,
+        WayKind::File,
+        WayKind::Row,
+        WayKind::Template,
+        WayKind::Factor,
+        WayKind::Constant,
+    ] {
         assert!(ways.contains(&way), "{way:?}");
     }
 }

@@ -13,7 +13,8 @@ struct Folder(PathBuf);
 
 impl Folder {
     fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("condyle-authoring-{}-{name}", std::process::id()));
+        let path =
+            std::env::temp_dir().join(format!("condyle-authoring-{}-{name}", std::process::id()));
         let _ = std::fs::remove_dir_all(&path);
         std::fs::create_dir_all(&path).unwrap();
         Self(path)
@@ -77,7 +78,10 @@ fn what_another_program_wrote_is_never_overwritten() {
     std::fs::write(&file, &theirs).unwrap();
     assert!(matches!(leg.set(&at, -0.44, None), Err(AuthoringError::Changed(_))));
     assert!(matches!(leg.undo(), Err(AuthoringError::Changed(_))));
-    assert!(matches!(leg.put(&["segment".into(), "toe".into(), "parent".into()], "\"foot\""), Err(AuthoringError::Changed(_))));
+    assert!(matches!(
+        leg.put(&["segment".into(), "toe".into(), "parent".into()], "\"foot\""),
+        Err(AuthoringError::Changed(_))
+    ));
     assert_eq!(text(&file), theirs);
     assert_eq!(leg.reload(), Ok(true));
     assert_eq!(leg.reload(), Ok(false));
@@ -96,7 +100,11 @@ fn a_broken_file_keeps_the_last_good_model_and_says_where_it_is_wrong() {
     std::fs::write(&file, TEXT.replace("parent", "parnet")).unwrap();
     let fault = leg.reload().unwrap_err();
     assert_eq!((fault.line, fault.column), (7, 1));
-    assert!(fault.excerpt.contains("7 | parnet = \"shank\"\n  | ^^^^^^ did you mean `parent`?"), "{}", fault.excerpt);
+    assert!(
+        fault.excerpt.contains("7 | parnet = \"shank\"\n  | ^^^^^^ did you mean `parent`?"),
+        "{}",
+        fault.excerpt
+    );
     assert_eq!(leg.editing().values().len(), 3);
     std::fs::write(&file, TEXT).unwrap();
     assert_eq!(leg.reload(), Ok(false), "the file is as it was read");
@@ -116,12 +124,17 @@ fn the_first_edit_of_a_shipped_model_makes_a_file_that_includes_it() {
     assert!(!knee.is_file() && !file.exists() && knee.path() == file);
     // Before the first edit the model is the shipped one.
     assert_eq!(knee.editing().document().model, shipped::read("knee").unwrap().value.model);
-    let value = knee.editing().values().iter().find(|v| {
-        v.path.first() == path("segment").first() && v.value != 0.0
-    });
+    let value = knee
+        .editing()
+        .values()
+        .iter()
+        .find(|v| v.path.first() == path("segment").first() && v.value != 0.0);
     let value = value.unwrap().clone();
     let question = knee.question(&value.path, Some(WayKind::Override)).unwrap();
-    assert!(question.contains("includes the shipped `knee`") && question.contains("in place of"), "{question}");
+    assert!(
+        question.contains("includes the shipped `knee`") && question.contains("in place of"),
+        "{question}"
+    );
     knee.set(&value.path, value.value + 0.01, Some(WayKind::Override)).unwrap();
     assert!(knee.is_file() && text(&file).contains("include = [\"knee\"]"));
     let model = open::model(&file).unwrap().value;

@@ -36,7 +36,8 @@ fn posed(model: &Model, mode: Mode) -> Vec<(String, [f64; 16])> {
     for id in model.coordinate_ids() {
         let coordinate = model.coordinate(id);
         // A number from 0.2 to 0.8 by the name.
-        let hash = coordinate.name.bytes().fold(7u32, |h, b| h.wrapping_mul(31).wrapping_add(b.into()));
+        let hash =
+            coordinate.name.bytes().fold(7u32, |h, b| h.wrapping_mul(31).wrapping_add(b.into()));
         let share = 0.2 + 0.6 * f64::from(hash % 1000) / 1000.0;
         let value = match (coordinate.kind, coordinate.range.lower, coordinate.range.upper) {
             (CoordinateKind::Orientation, ..) => continue,

@@ -34,7 +34,12 @@ fn leg() -> Editing {
 
 /// What an edit makes of the text.
 fn set(editing: &Editing, at: &str, value: f64, way: Option<WayKind>) -> String {
-    editing.set(&path(at), value, way).unwrap_or_else(|why| panic!("{at}: {why}")).next.text().to_owned()
+    editing
+        .set(&path(at), value, way)
+        .unwrap_or_else(|why| panic!("{at}: {why}"))
+        .next
+        .text()
+        .to_owned()
 }
 
 #[test]
@@ -44,10 +49,10 @@ fn values_have_the_units_of_their_text_and_say_where_they_are() {
         let value = leg.find(&path(at)).unwrap_or_else(|| panic!("{at}"));
         (value.value, value.unit, value.line, value.column, value.origin.name())
     };
-    assert_eq!(found("segment.femur_r.at.2"), (0.083, "m", 8, 22, "plain"));
+    assert_eq!(found("segment.femur_r.at.2"), (0.083, "m", 8, 21, "plain"));
     assert_eq!(found("segment.tibia_r.turn.1"), (12.5, "deg", 12, 12, "plain"));
     assert_eq!(found("segment.tibia_r.at.1"), (-0.42, "m", 11, 10, "constant"));
-    assert_eq!(found("joint.knee_r.coordinate.knee_r.range.1"), (140.0, "deg", 22, 39, "plain"));
+    assert_eq!(found("joint.knee_r.coordinate.knee_r.range.1"), (140.0, "deg", 22, 37, "plain"));
     assert_eq!(found("constants.thigh"), (0.42, "", 4, 23, "plain"));
     // 2 * 0.5 * 0.42 - 0.01 below.
     assert!((leg.find(&path("segment.patella_r.at.1")).unwrap().value + 0.41).abs() < 1e-15);
@@ -97,7 +102,10 @@ fn the_mirrored_side_follows_and_is_set_on_the_written_one() {
     };
     assert_eq!((z("femur_r"), z("femur_l")), (0.09, -0.09));
     let coordinate = path("joint.knee_l.coordinate.knee_l.range.1");
-    assert_eq!(set(&leg, "joint.knee_l.coordinate.knee_l.range.1", 150.0, None), LEG.replace("140", "150"));
+    assert_eq!(
+        set(&leg, "joint.knee_l.coordinate.knee_l.range.1", 150.0, None),
+        LEG.replace("140", "150")
+    );
     assert!(leg.is_mirrored(&coordinate));
 }
 
@@ -137,7 +145,10 @@ fn included_values_change_in_their_file_or_in_a_line_of_the_document() {
     let over = editing.set(&turn, 90.0, Some(WayKind::Override)).unwrap();
     let line = "\n[segment.tibia_r]\nturn = [0, 1.5707963267948966, 0]\n";
     assert_eq!(over.next.text(), format!("{root}{line}"));
-    let (a, b) = (posed(&in_file.next.document().model, Mode::Posed), posed(&over.next.document().model, Mode::Posed));
+    let (a, b) = (
+        posed(&in_file.next.document().model, Mode::Posed),
+        posed(&over.next.document().model, Mode::Posed),
+    );
     assert!(apart(&a, &b) < 1e-15);
     // What stands in its place is a number of the document itself from then on.
     let again = over.next.set(&turn, 1.5, None).unwrap();
@@ -161,7 +172,8 @@ instances = [
 "{name}" = { parent = "{below}", at = [0.01, "$height", "-0.5 * $height"] }
 [segment.pelvis]
 "#;
-    let editing = Editing::read("spine.toml", text, &mut |_| Err("none".into()), &|_| true).unwrap();
+    let editing =
+        Editing::read("spine.toml", text, &mut |_| Err("none".into()), &|_| true).unwrap();
     assert_eq!(set(&editing, "segment.l2.at.1", 0.04, None), text.replace("0.0360", "0.04"));
     assert_eq!(set(&editing, "segment.l2.at.0", 0.02, None), text.replace("[0.01", "[0.02"));
     assert_eq!(set(&editing, "segment.l3.at.2", -0.0092, None), text.replace("-0.5 *", "-0.25 *"));
@@ -174,31 +186,42 @@ instances = [
         format!("{text}\n[segment.l2]\nat = [0.02, 0.0360, -0.018]\n")
     );
     let ways = &editing.find(&path("segment.l2.at.0")).unwrap().ways;
-    assert_eq!(ways[0].sentence, "changes template `disc` itself (spine.toml:10), in all 2 instances");
+    assert_eq!(
+        ways[0].sentence,
+        "changes template `disc` itself (spine.toml:10), in all 2 instances"
+    );
 }
 
 #[test]
 fn lines_that_stand_in_place_of_shipped_values_change_the_model_as_its_own_text_would() {
     let mut count = 0;
     for name in shipped::names().filter(|name| *name != "human") {
-        let root = format!("condyle = 1\nkind = \"model\"\nangles = \"deg\"\ninclude = [\"{name}\"]\n");
+        let root =
+            format!("condyle = 1\nkind = \"model\"\nangles = \"deg\"\ninclude = [\"{name}\"]\n");
         let editing = Editing::read("mine.toml", &root, &mut super::part, &|_| false).unwrap();
         let own = super::shipped_as_own(name);
         for value in editing.values().iter().step_by(29) {
             assert_eq!(value.origin, Origin::Shipped);
-            let Some(way) = value.ways.iter().find(|way| way.kind == WayKind::Override) else { continue };
+            let Some(way) = value.ways.iter().find(|way| way.kind == WayKind::Override) else {
+                continue;
+            };
             let new = if value.value == 0.0 { 0.002 } else { value.value * 1.002 };
             let told = format!("{name}: {:?}, which {}", value.path, way.sentence);
-            let own_way = own.find(&value.path).unwrap().ways.iter().map(|way| way.kind).find(|kind| {
-                matches!(kind, WayKind::Here | WayKind::File | WayKind::Number)
-            });
+            let own_way = own
+                .find(&value.path)
+                .unwrap()
+                .ways
+                .iter()
+                .map(|way| way.kind)
+                .find(|kind| matches!(kind, WayKind::Here | WayKind::File | WayKind::Number));
             let Some(own_way) = own_way else { continue };
             let over = match editing.set(&value.path, new, Some(way.kind)) {
                 Ok(over) => over,
                 Err(Refused::Fault { .. }) => continue,
                 Err(why) => panic!("{told}: {why}"),
             };
-            let own = own.set(&value.path, new, Some(own_way)).unwrap_or_else(|e| panic!("{told}: {e}"));
+            let own =
+                own.set(&value.path, new, Some(own_way)).unwrap_or_else(|e| panic!("{told}: {e}"));
             for mode in [Mode::Posed, Mode::Open] {
                 let (a, b) = (&over.next.document().model, &own.next.document().model);
                 assert!(apart(&posed(a, mode), &posed(b, mode)) < 1e-12, "{told}");
@@ -220,17 +243,39 @@ fn wires_components_and_segments_are_added_where_they_belong() {
     let added = editing.put(&keys("joint_set.elbow.component.half.map"), half).unwrap();
     let expected = format!("\r\n[joint_set.elbow.component.half]\r\nmap = {half}\r\n");
     assert_eq!(added.next.text(), format!("{text}{expected}"));
-    let wired = added.next.put(&keys("joint_set.elbow.component.turn.rotate.angle"), "\"half\"").unwrap();
-    assert_eq!(wired.next.text(), added.next.text().replace("angle = \"bend\"", "angle = \"half\""));
+    let wired =
+        added.next.put(&keys("joint_set.elbow.component.turn.rotate.angle"), "\"half\"").unwrap();
+    assert_eq!(
+        wired.next.text(),
+        added.next.text().replace("angle = \"bend\"", "angle = \"half\"")
+    );
     assert_eq!((wired.change.old.as_str(), wired.change.new.as_str()), ("\"bend\"", "\"half\""));
     // A key into a table that is there, in braces or not.
     let source = editing.put(&keys("joint_set.elbow.coordinate.bend.source"), "\"me\"").unwrap();
-    assert_eq!(source.next.text(), text.replace("[0, 2] }", "[0, 2] , source = \"me\" }").replace("] , source", "], source"));
+    assert_eq!(source.next.text(), text.replace("[0, 2] }", "[0, 2], source = \"me\" }"));
+    let more = editing
+        .put(
+            &keys("joint_set.elbow.component.more.combine"),
+            "{ inputs = [\"bend\"], function = { slopes = [1] } }",
+        )
+        .unwrap();
+    let intercept = more
+        .next
+        .put(&keys("joint_set.elbow.component.more.combine.function.intercept"), "0.1")
+        .unwrap();
+    assert!(intercept.next.text().ends_with("function = { slopes = [1], intercept = 0.1 } }\r\n"));
     let parent = editing.put(&keys("segment.arm.at"), "[0, 1, 0]").unwrap();
-    assert!(parent.next.text().contains("[segment.arm]\r\nat = [0, 1, 0]"), "{}", parent.next.text());
+    assert!(
+        parent.next.text().contains("[segment.arm]\r\nat = [0, 1, 0]"),
+        "{}",
+        parent.next.text()
+    );
     // What is wrong is refused: an unknown port, a table that is there, no TOML.
     let wrong = editing.put(&keys("joint_set.elbow.component.turn.rotate.angle"), "\"none\"");
     assert!(matches!(wrong, Err(Refused::Fault { .. })));
     assert!(matches!(editing.put(&keys("segment.arm"), "{}"), Err(Refused::Impossible(_))));
-    assert!(matches!(editing.put(&keys("segment.arm.at"), "[0, 1\nx = 2"), Err(Refused::Impossible(_))));
+    assert!(matches!(
+        editing.put(&keys("segment.arm.at"), "[0, 1\nx = 2"),
+        Err(Refused::Impossible(_))
+    ));
 }

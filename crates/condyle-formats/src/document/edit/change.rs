@@ -55,7 +55,9 @@ impl fmt::Display for Refused {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Impossible(why) => f.write_str(why),
-            Self::Fault { error, .. } => write!(f, "the document could not be read any more: {error}"),
+            Self::Fault { error, .. } => {
+                write!(f, "the document could not be read any more: {error}")
+            }
         }
     }
 }
@@ -84,7 +86,7 @@ fn solved(value: f64, slope: f64, offset: f64) -> f64 {
     let exact = (value - offset) / slope;
     let short: f64 = format!("{exact:.14e}").parse().unwrap_or(exact);
     let back = offset + slope * short;
-    if (back - value).abs() <= 1e-14 * value.abs() { short } else { exact }
+    if (back - value).abs() <= 4e-16 * value.abs() { short } else { exact }
 }
 
 impl Editing {
@@ -113,7 +115,8 @@ impl Editing {
             Target::Replace { source, range, affine, signed } => {
                 let new = number(solved(value, affine.slope, affine.offset));
                 if new.starts_with('-') && !signed {
-                    let why = format!("the number in the expression of `{name}` cannot be negative");
+                    let why =
+                        format!("the number in the expression of `{name}` cannot be negative");
                     return Err(Refused::Impossible(why));
                 }
                 let source = self.sources.get(*source).ok_or("the text is not known")?;
@@ -121,12 +124,8 @@ impl Editing {
                 // A value that does not change keeps its digits.
                 let same = old.parse::<f64>().ok() == new.parse().ok() && !old.is_empty();
                 let new = if same { old.to_owned() } else { new };
-                let change = Change {
-                    file: source.name.clone(),
-                    at: range.start,
-                    old: old.to_owned(),
-                    new,
-                };
+                let change =
+                    Change { file: source.name.clone(), at: range.start, old: old.to_owned(), new };
                 self.changed(change)?
             }
             Target::Override { path, pieces, piece, affine, enforced } => {
@@ -197,5 +196,7 @@ mod tests {
         // 0.155 s is 0.16 for s = 1.0322580645161290...; -(0.3) for a minus before a constant.
         assert_eq!(number(solved(-0.3, -1.0, 0.0)), "0.3");
         assert_eq!(number(solved(0.0616, 0.385, 0.0)), "0.16");
+        // The whole of pi / 2 is kept.
+        assert_eq!(number(solved(90.0, 180.0 / std::f64::consts::PI, 0.0)), "1.5707963267948966");
     }
 }

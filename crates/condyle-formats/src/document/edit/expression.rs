@@ -82,7 +82,8 @@ pub(super) fn literal(
         _ => return None,
     };
     let mut value = |literal: &str| {
-        let changed = format!("{}{literal}{}", &text[..chosen.range.start], &text[chosen.range.end..]);
+        let changed =
+            format!("{}{literal}{}", &text[..chosen.range.start], &text[chosen.range.end..]);
         reader.sum(&changed, spot)
     };
     let affine = Affine::through([value("0"), value("1"), value("2")])?;
@@ -126,11 +127,14 @@ pub(super) fn followed(
             Some(node) => (node, Place::Parameter(spot.context, name.to_owned())),
             None => (*defined.get(name)?, Place::Constant(name.to_owned())),
         };
-        let (value, at) = (match &node.value {
-            Value::Number(_) => None,
-            Value::Text(text) => Some(text.clone()),
-            _ => return None,
-        }, node.spot);
+        let (value, at) = (
+            match &node.value {
+                Value::Number(_) => None,
+                Value::Text(text) => Some(text.clone()),
+                _ => return None,
+            },
+            node.spot,
+        );
         let name = name.to_owned();
         let parameter = matches!(place, Place::Parameter(..));
         chain.push((text, spot, place));
@@ -212,7 +216,10 @@ mod tests {
     #[test]
     fn numbers_are_found_with_their_sign_where_one_may_stand() {
         let of = |text: &'static str| {
-            literals(text).into_iter().map(|l| (&text[l.range], l.signed, l.alone)).collect::<Vec<_>>()
+            literals(text)
+                .into_iter()
+                .map(|l| (&text[l.range], l.signed, l.alone))
+                .collect::<Vec<_>>()
         };
         assert_eq!(of("-0.5 * $height"), [("-0.5", true, false)]);
         assert_eq!(of("$a * 2 - $b"), [("2", false, false)]);

@@ -24,10 +24,10 @@ mod way;
 pub use change::{Change, Edited, Refused};
 pub use way::{Origin, Way, WayKind};
 
-use super::model::read_edited;
 use super::Document;
-pub(super) use leaf::{Found, gather};
+use super::model::read_edited;
 use condyle_diagnostics::Error;
+pub(super) use leaf::{Found, gather};
 use std::collections::HashMap;
 use std::fmt;
 
@@ -134,8 +134,7 @@ impl Editing {
         include: &mut dyn FnMut(&str) -> Result<String, String>,
         owned: &dyn Fn(&str) -> bool,
     ) -> Result<Self, Error> {
-        let mut sources =
-            vec![Source { name: String::new(), text: text.to_owned(), owned: true }];
+        let mut sources = vec![Source { name: String::new(), text: text.to_owned(), owned: true }];
         let mut noted = |name: &str| {
             let text = include(name)?;
             if !sources.iter().any(|source| source.name == name) {
@@ -164,7 +163,9 @@ impl Editing {
         let mut include = |wanted: &str| match self.source(wanted) {
             Some(_) if wanted == name => Ok(text.to_owned()),
             Some(source) => Ok(source.text.clone()),
-            None => Err("it was not read before: save the document in an editor instead".to_owned()),
+            None => {
+                Err("it was not read before: save the document in an editor instead".to_owned())
+            }
         };
         let owned = |wanted: &str| self.source(wanted).is_none_or(|source| source.owned);
         Self::read(&self.title, root, &mut include, &owned)

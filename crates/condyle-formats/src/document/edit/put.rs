@@ -6,7 +6,6 @@ use super::{Edited, Editing, Refused, Step, key_text, shown};
 use crate::document::tree::{ends, own_tables, too_deep};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-use toml_edit::{DocumentMut, Item, Table, Value as NewValue};
 
 impl Editing {
     /// Gives a key a value, which is written as TOML: `"elbow"`, `[0, 1, 0]`, `{ parent = "hand" }`. A value that stands
@@ -60,13 +59,10 @@ impl Editing {
         {
             return replaced(text, table, key, found, value);
         }
-        let change = |new: String, at: usize| Change {
-            file: String::new(),
-            at,
-            old: String::new(),
-            new,
-        };
-        if own_tables(parsed, table).is_none() && !table.is_empty() && !inline(text, parsed, table) {
+        let change =
+            |new: String, at: usize| Change { file: String::new(), at, old: String::new(), new };
+        if own_tables(parsed, table).is_none() && !table.is_empty() && !inline(text, parsed, table)
+        {
             let ending = if text.contains("\r\n") { "\r\n" } else { "\n" };
             let name: Vec<String> = table.iter().map(|key| key_text(key)).collect();
             let mut new = String::new();
@@ -79,23 +75,8 @@ impl Editing {
             }
             return Ok(change(new, text.len()));
         }
-        let written = inserted(text, table, keys)?;
-        // What was added, in one piece; all else must be as it was.
-        let added = written.len().checked_sub(text.len());
-        let common = text.bytes().zip(written.bytes()).take_while(|(a, b)| a == b).count();
-        let mut common = common;
-        while !text.is_char_boundary(common) || !written.is_char_boundary(common) {
-            common -= 1;
-        }
-        let same = added.and_then(|added| written.get(common + added..)) == text.get(common..);
-        match added.and_then(|added| written.get(common..common + added)) {
-            Some(new) if same => Ok(change(new.to_owned(), common)),
-            _ => {
-                let path: Vec<Step> = table.iter().cloned().map(Step::Key).collect();
-                let why = format!("[{}] cannot be added to as it is written: edit the text", shown(&path));
-                Err(Refused::Impossible(why))
-            }
-        }
+        let (at, new) = place(text, parsed, table, keys)?;
+        Ok(change(new, at))
     }
 }
 
@@ -138,27 +119,93 @@ fn inline(text: &str, top: &DeTable<'_>, table: &[String]) -> bool {
     false
 }
 
-/// The text with keys added to a table that is there.
-fn inserted(text: &str, table: &[String], keys: &[(&str, String)]) -> Result<String, Refused> {
-    let wrong = |_| Refused::from("the text could not be read");
-    let mut document: DocumentMut = text.parse().map_err(wrong)?;
-    let mut here: &mut Item = document.as_item_mut();
-    for key in table {
-        let Some(like) = here.as_table_like_mut() else {
+/// Where keys are added to a table that is there, or that is in one in braces, and how.
+fn place(
+    text: &str,
+    top: &DeTable<'_>,
+    table: &[String],
+    keys: &[(&str, String)],
+) -> Result<(usize, String), Refused> {
+    let mut here = top;
+    let mut span = 0..0;
+    for (depth, key) in table.iter().enumerate() {
+        let Some(next) = here.get(key.as_str()) else { break };
+        let DeValue::Table(inner) = next.get_ref() else {
             return Err(Refused::Impossible(format!("`{key}` is no table")));
         };
-        let implicit = || {
-            let mut table = Table::new();
-            table.set_implicit(true);
-            Item::Table(table)
-        };
-        here = like.entry(key).or_insert_with(implicit);
+        (here, span) = (inner, next.span());
+        if text.get(span.clone()).is_some_and(|found| found.starts_with('{')) {
+            return in_braces(text, inner, span, &table[depth + 1..], keys);
+        }
     }
-    let Some(like) = here.as_table_like_mut() else { return Err("this is no table".into()) };
-    for (key, value) in keys {
-        let value: NewValue =
-            value.parse().map_err(|_| Refused::Impossible(format!("{value} is no value")))?;
-        like.insert(key, Item::Value(value));
+    let ending = if text.contains("\r\n") { "\r\n" } else { "\n" };
+    let written = |prefix: &str| {
+        let line = |(key, value): &(&str, String)| format!("{prefix}{} = {value}", key_text(key));
+        keys.iter().map(line).collect::<Vec<_>>().join(ending)
+    };
+    let line_end = |at: usize| {
+        let rest = text.get(at..).unwrap_or_default();
+        rest.find('\n').map_or(text.len(), |end| at + end + 1)
+    };
+    // After the last value that stands in this table itself.
+    let own = here.iter().filter(|(_, value)| match value.get_ref() {
+        DeValue::Table(_) => text.get(value.span()).is_some_and(|found| found.starts_with('{')),
+        _ => true,
+    });
+    let last = own.map(|(key, value)| (key.span().start, value.span().end)).max();
+    let (at, prefix) = match last {
+        Some((key, end)) => {
+            let from = text.get(..key).unwrap_or_default().rfind('\n').map_or(0, |at| at + 1);
+            let prefix = text.get(from..key).unwrap_or_default();
+            if prefix.contains(['{', '=', '#']) {
+                return Err("it cannot be added to as it is written: edit the text".into());
+            }
+            (line_end(end), prefix)
+        }
+        // A table with a header and nothing else in it.
+        None if text.get(span.start..).is_some_and(|found| found.starts_with('[')) => {
+            (line_end(span.end), "")
+        }
+        None => return Err("it cannot be added to as it is written: edit the text".into()),
+    };
+    let before = if text.get(..at).is_some_and(|t| t.ends_with('\n')) { "" } else { ending };
+    Ok((at, format!("{before}{}{ending}", written(prefix))))
+}
+
+/// Where keys are added to a table in braces, and how.
+fn in_braces(
+    text: &str,
+    mut inner: &DeTable<'_>,
+    mut span: std::ops::Range<usize>,
+    mut below: &[String],
+    keys: &[(&str, String)],
+) -> Result<(usize, String), Refused> {
+    while let Some((first, rest)) = below.split_first()
+        && let Some(next) = inner.get(first.as_str())
+        && let DeValue::Table(deeper) = next.get_ref()
+        && text.get(next.span()).is_some_and(|found| found.starts_with('{'))
+    {
+        (inner, span, below) = (deeper, next.span(), rest);
     }
-    Ok(document.to_string())
+    let prefix: String = below.iter().map(|key| format!("{}.", key_text(key))).collect();
+    let pair = |(key, value): &(&str, String)| format!("{prefix}{} = {value}", key_text(key));
+    let pairs = keys.iter().map(pair).collect::<Vec<_>>().join(", ");
+    // The values of dotted keys are deeper.
+    let mut open: Vec<_> = inner.iter().map(|(_, value)| value).collect();
+    let mut last = None;
+    while let Some(value) = open.pop() {
+        match value.get_ref() {
+            DeValue::Table(table)
+                if !text.get(value.span()).is_some_and(|found| found.starts_with('{')) =>
+            {
+                open.extend(table.iter().map(|(_, value)| value));
+            }
+            _ => last = last.max(Some(value.span().end)),
+        }
+    }
+    match last {
+        Some(end) if end < span.end => Ok((end, format!(", {pairs}"))),
+        None => Ok((span.start + 1, format!(" {pairs} "))),
+        Some(_) => Err("it cannot be added to as it is written: edit the text".into()),
+    }
 }

@@ -19,15 +19,47 @@ pub(super) enum Unit {
 
 /// Keys of points and lengths.
 const LENGTHS: &[&str] = &[
-    "at", "joint_at", "radii", "size", "length", "pitch", "chord", "outline", "middle", "thickness", "distance",
-    "most_gap", "point", "half_width",
+    "at",
+    "joint_at",
+    "radii",
+    "size",
+    "length",
+    "pitch",
+    "chord",
+    "outline",
+    "middle",
+    "thickness",
+    "distance",
+    "most_gap",
+    "point",
+    "half_width",
 ];
 /// Keys of angles.
-const ANGLES: &[&str] = &["turn", "joint_turn", "tilt", "neutral", "twist", "to", "angle", "pump", "swing"];
+const ANGLES: &[&str] =
+    &["turn", "joint_turn", "tilt", "neutral", "twist", "to", "angle", "pump", "swing"];
 /// Keys of directions and ratios.
 const RATIOS: &[&str] = &[
-    "axis", "axes", "direction", "normal", "weight", "factor", "stiffness", "matrix", "joint_matrix", "forward", "up",
-    "along", "across", "rest_direction", "proximal", "distal", "peak", "plane", "outward", "first", "second",
+    "axis",
+    "axes",
+    "direction",
+    "normal",
+    "weight",
+    "factor",
+    "stiffness",
+    "matrix",
+    "joint_matrix",
+    "forward",
+    "up",
+    "along",
+    "across",
+    "rest_direction",
+    "proximal",
+    "distal",
+    "peak",
+    "plane",
+    "outward",
+    "first",
+    "second",
 ];
 
 /// The tables around a number.
@@ -63,17 +95,26 @@ impl<'t> Scope<'t> {
 
     /// The unit of the number at a path.
     pub(super) fn unit(&self, path: &[Step]) -> Unit {
-        let keys: Vec<&str> = path.iter().filter_map(|step| match step {
-            Step::Key(key) => Some(key.as_str()),
-            Step::Index(_) => None,
-        }).collect();
+        let keys: Vec<&str> = path
+            .iter()
+            .filter_map(|step| match step {
+                Step::Key(key) => Some(key.as_str()),
+                Step::Index(_) => None,
+            })
+            .collect();
         let last = keys.last().copied().unwrap_or_default();
         let index = path.iter().rev().find_map(|step| match step {
             Step::Index(index) => Some(*index),
             Step::Key(_) => None,
         });
         match keys[..] {
-            ["joint" | "joint_set", set, "coordinate", name, "range" | "default" | "typical" | "rest"] => {
+            [
+                "joint" | "joint_set",
+                set,
+                "coordinate",
+                name,
+                "range" | "default" | "typical" | "rest",
+            ] => {
                 let stated = self.stated("unit");
                 return Unit::Coordinate { set: set.to_owned(), name: name.to_owned(), stated };
             }
@@ -97,7 +138,7 @@ impl<'t> Scope<'t> {
             }
             (_, "ends" | "constant") => Unit::Named(value),
             (_, "linear" | "polynomial" | "slopes" | "intercept") => Unit::Named(""),
-            ("" , "rest") => Unit::Named(""),
+            ("", "rest") => Unit::Named(""),
             (_, key) if LENGTHS.contains(&key) => Unit::Named("m"),
             (_, key) if ANGLES.contains(&key) => Unit::Angle,
             (_, key) if RATIOS.contains(&key) => Unit::Named("1"),

@@ -147,9 +147,10 @@ pub(super) fn editables(
     found: Found,
     document: &Document,
 ) -> Vec<Editable> {
-    let sources_of = found.files.iter().map(|name| {
-        sources.iter().position(|source| source.name == *name).unwrap_or_default()
-    });
+    let sources_of = found
+        .files
+        .iter()
+        .map(|name| sources.iter().position(|source| source.name == *name).unwrap_or_default());
     let mut at_spot: HashMap<Spot, usize> = HashMap::new();
     for leaf in &found.leaves {
         *at_spot.entry(plain_spot(leaf.spot)).or_default() += 1;
@@ -259,9 +260,8 @@ impl Maker<'_> {
             "joint" | "joint_set" => &["joint", "joint_set"],
             family => &[family],
         };
-        let written = |family: &&str| {
-            self.found.names.contains(&((*family).to_owned(), twin.clone()))
-        };
+        let written =
+            |family: &&str| self.found.names.contains(&((*family).to_owned(), twin.clone()));
         if families.iter().any(written) {
             return None;
         }
@@ -293,7 +293,8 @@ impl Maker<'_> {
         let (kind, sentence) = match &leaf.context {
             Some(Context::Parameter { template, .. }) => {
                 let others = self.others(leaf.spot);
-                let what = format!("writes the value in the row of template `{template}` ({place})");
+                let what =
+                    format!("writes the value in the row of template `{template}` ({place})");
                 (WayKind::Row, format!("{what}{others}"))
             }
             Some(Context::Instance { template, of, .. }) => {
@@ -309,7 +310,13 @@ impl Maker<'_> {
         Some(Way { kind, sentence, target })
     }
 
-    fn replace(&self, spot: Spot, range: Range<usize>, affine: Affine, signed: bool) -> Option<Target> {
+    fn replace(
+        &self,
+        spot: Spot,
+        range: Range<usize>,
+        affine: Affine,
+        signed: bool,
+    ) -> Option<Target> {
         let (source, _) = self.source(spot)?;
         Some(Target::Replace { source, range, affine, signed })
     }
