@@ -320,3 +320,8 @@ pub use figure::{Figure, Part};
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 pub struct Readme;
+
+/// The manual of editing, run as a test.
+#[cfg(all(doctest, feature = "authoring"))]
+#[doc = include_str!("../../../docs/authoring.md")]
+pub struct AuthoringManual;

@@ -104,12 +104,18 @@ impl Running {
         let (told, heard) = mpsc::channel();
         let (begun, begins) = mpsc::channel();
         std::thread::spawn(move || {
-            let mut all = String::new();
+            let (mut all, mut started) = (String::new(), false);
             let mut bytes = [0; 4096];
             while let Ok(count @ 1..) = stream.read(&mut bytes) {
                 all.push_str(&String::from_utf8_lossy(&bytes[..count]));
-                if all.contains("retry:") {
+                // The head names `data:` as well: events come after the first line of the body.
+                if let Some(at) = all.find("retry: 1000\n\n") {
+                    all.drain(..at + 13);
+                    started = true;
                     let _ = begun.send(());
+                }
+                if !started {
+                    continue;
                 }
                 while let Some(at) = all.find("data: ") {
                     let Some(end) = all[at..].find("\n\n") else { break };
