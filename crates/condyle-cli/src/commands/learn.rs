@@ -2,6 +2,7 @@
 
 mod coupling;
 mod joint;
+mod study;
 
 mod given;
 
@@ -35,6 +36,8 @@ enum What {
     Coupling(Box<coupling::Coupling>),
     /// Make a model with a free joint from a standing trial.
     Joint(Box<joint::Joint>),
+    /// Remake the study of Pronost et al. 2010 with virtual people whose knees are known.
+    Study(study::Study),
 }
 
 /// How a limit is learned.
@@ -137,6 +140,7 @@ impl Learn {
             What::Limits(limits) => limits.run(),
             What::Coupling(coupling) => coupling.run(),
             What::Joint(joint) => joint.run(),
+            What::Study(study) => study.run(),
         }
     }
 }

@@ -1,4 +1,6 @@
 //! Laws learned from markers that are generated: machines whose coefficients are known, and a knee.
 
+mod functional;
 mod knee;
 mod machines;
+mod study;
