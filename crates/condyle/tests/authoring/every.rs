@@ -47,7 +47,13 @@ fn value_at<'v>(root: &'v mut toml::Value, path: &[Step]) -> &'v mut toml::Value
 }
 
 /// Changes one number and compares with what `toml` makes of it; whether the model still loads with it.
-fn check(name: &str, editing: &Editing, editable: &Editable, way: WayKind) -> bool {
+fn check(
+    name: &str,
+    editing: &Editing,
+    editable: &Editable,
+    way: WayKind,
+    given: &dyn Fn(&str) -> Result<String, String>,
+) -> bool {
     let value = near(editable.value);
     let told = || format!("{name}: {:?} by {way:?} to {value}", editable.path);
     let edited = match editing.set(&editable.path, value, Some(way)) {
@@ -86,7 +92,7 @@ fn check(name: &str, editing: &Editing, editable: &Editable, way: WayKind) -> bo
     let text = toml::to_string(&own).unwrap();
     let changed = edited.change.file.as_str();
     let mut include =
-        |wanted: &str| if wanted == changed { Ok(text.clone()) } else { part(wanted) };
+        |wanted: &str| if wanted == changed { Ok(text.clone()) } else { given(wanted) };
     let root = if changed.is_empty() { &text } else { editing.text() };
     let oracle = document::read(root, &mut include).unwrap_or_else(|e| panic!("{}: {e}", told()));
     for mode in [Mode::Posed, Mode::Open] {
@@ -131,7 +137,7 @@ fn every_kind(names: &[&str], most: usize) -> (usize, usize, HashSet<WayKind>) {
                     continue;
                 }
                 ways.insert(way.kind);
-                match check(name, &editing, editable, way.kind) {
+                match check(name, &editing, editable, way.kind, &part) {
                     true => changed += 1,
                     false => refused += 1,
                 }
@@ -167,4 +173,50 @@ fn every_number_of_shipped_models_changes_alone() {
     let (changed, refused, _) = every_kind(&names, usize::MAX);
     println!("{changed} numbers changed, {refused} refused");
     assert!(changed > 5000 && refused * 10 < changed, "{changed} changed, {refused} refused");
+}
+
+/// The documents of the manual: kinds of components that no shipped model has are there.
+#[test]
+fn every_number_of_the_manual_changes_alone() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/model-format");
+    let (mut changed, mut refused, mut documents) = (0, 0, 0);
+    for page in std::fs::read_dir(folder).unwrap() {
+        let page = page.unwrap().path();
+        let text = std::fs::read_to_string(&page).unwrap_or_default();
+        let blocks: Vec<(&str, &str)> = text
+            .split("```toml")
+            .skip(1)
+            .filter_map(|rest| rest.split_once("```")?.0.split_once('\n'))
+            .map(|(name, block)| (name.trim(), block))
+            .collect();
+        let named = |wanted: &str| {
+            let found = blocks.iter().find(|(name, _)| *name == wanted);
+            found.map(|(_, block)| (*block).to_owned()).map_or_else(|| part(wanted), Ok)
+        };
+        for (_, block) in &blocks {
+            // Those that show errors are not read.
+            let Ok(editing) = Editing::read("doc.toml", block, &mut |name| named(name), &|_| true)
+            else {
+                continue;
+            };
+            documents += 1;
+            let name = format!("{}: {block}", page.display());
+            for editable in editing.values() {
+                for way in &editable.ways {
+                    if way.kind == WayKind::Override {
+                        continue;
+                    }
+                    match check(&name, &editing, editable, way.kind, &named) {
+                        true => changed += 1,
+                        false => refused += 1,
+                    }
+                }
+            }
+        }
+    }
+    println!("{changed} numbers of {documents} documents changed, {refused} refused");
+    assert!(
+        documents > 40 && changed > 300 && refused * 5 < changed,
+        "{documents}, {changed}, {refused}"
+    );
 }
