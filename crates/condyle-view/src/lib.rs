@@ -16,6 +16,8 @@
 mod base64;
 mod bundle;
 mod export;
+#[cfg(feature = "server")]
+pub mod server;
 mod session;
 
 pub use bundle::{Asset, PAGE, asset, assets};

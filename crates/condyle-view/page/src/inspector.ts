@@ -8,6 +8,10 @@ import { SIGNS } from "./timeline";
 
 export class Inspector {
   readonly network = new Network();
+  /** What others put below. */
+  readonly also: HTMLElement[] = [];
+  /** Called after everything was made anew. */
+  readonly onbuild: (() => void)[] = [];
   private place = element("dd");
   private error = element("dd");
   private readonly dialog = element("dialog", { class: "wide", "aria-label": "network" });
@@ -73,7 +77,8 @@ export class Inspector {
       if (motions[chosen[0]]?.markers) parts.push(element("dl", {}, element("dt", {}, "markers off by"), this.error));
       parts.push(this.findings());
     }
-    this.root.replaceChildren(...parts);
+    this.root.replaceChildren(...parts, ...this.also);
+    for (const call of this.onbuild) call();
     this.refresh();
   }
 

@@ -1,6 +1,7 @@
 // Starts the page.
 
 import { App } from "./app";
+import { authoring } from "./authoring";
 import { Core } from "./core";
 import { byId } from "./dom";
 import { live } from "./live";
@@ -35,6 +36,7 @@ async function start(): Promise<void> {
   byId("waiting").hidden = true;
   if (given.mode !== "exported") dropping(app);
   if (given.mode === "served") live(app);
+  if (given.mode === "served" && given.editable) authoring(app);
   window.condyle = app;
   document.documentElement.dataset["ready"] = "yes";
 }
