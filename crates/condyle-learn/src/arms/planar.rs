@@ -8,6 +8,7 @@ use condyle_diagnostics::Error;
 use condyle_math::function::{Curve, Function, SimmSpline};
 
 /// Angle and place forward.
+#[expect(clippy::approx_constant, reason = "knots are those of the source, digit by digit")]
 const FORWARD: [[f64; 2]; 12] = [
     [-2.0944, -0.0032],
     [-1.74533, 0.00179],
@@ -24,6 +25,7 @@ const FORWARD: [[f64; 2]; 12] = [
 ];
 
 /// Angle and place upward.
+#[expect(clippy::approx_constant, reason = "knots are those of the source, digit by digit")]
 const UPWARD: [[f64; 2]; 7] = [
     [-2.0944, -0.4226],
     [-1.22173, -0.4082],
