@@ -4,6 +4,7 @@ use super::Plan;
 use crate::learning::coupling::tracked;
 use crate::tracking::Request;
 use condyle_diagnostics::Error;
+use condyle_learn::arms::{Centre, Sizes};
 use condyle_learn::calibration::FreeJoint;
 use condyle_learn::coupling::{Groups, Laws, Samples, Scope, Settings, learn};
 use condyle_learn::study::{BestLinear, Kind, Person, Skin};
@@ -18,6 +19,8 @@ pub(super) const PLACES: [&str; 3] = ["knee_r_tx", "knee_r_ty", "knee_r_tz"];
 pub struct Learned {
     /// The laws of the three places.
     pub laws: Laws,
+    /// What other kinds of knees take from the same frames.
+    pub centre: Centre,
     /// The linear laws nearest to the truth on the same frames.
     pub truth: Vec<BestLinear>,
     /// The slope of each place over flexion alone, whatever the other angles do meanwhile, as tracked and as it is true, in
@@ -45,6 +48,8 @@ pub struct Run {
     pub skin: Skin,
     /// The model whose knee is free.
     pub free: Model,
+    /// The sizes of the thigh in the standing trial.
+    pub sizes: Sizes,
     /// Laws of gaits and of crouches.
     pub learned: [Learned; 2],
     /// Some of the frames of crouches: the angles in radians, and how far the centre is from that of the law, in metres.
@@ -70,7 +75,10 @@ pub(super) fn run(
     step: &mut (dyn FnMut() + Send),
 ) -> Result<Run, Error> {
     let trials = &plan.trials;
-    let free = FreeJoint::knee_pronost2010().model(&trials.standing(person).recording)?;
+    let (joint, standing) = (FreeJoint::knee_pronost2010(), trials.standing(person).recording);
+    let free = joint.model(&standing)?;
+    let sizes =
+        Sizes::of(&joint, &standing).unwrap_or(Sizes { length: person.thigh, width: person.width });
     let coordinates = meant(&free)?;
     let request = Request { threads: plan.threads, ..Request::default() };
     let columns: Vec<String> = ANGLES.iter().chain(&PLACES).map(|c| (*c).to_owned()).collect();
@@ -110,6 +118,7 @@ pub(super) fn run(
         let tracked_rows = samples.trials.iter();
         let mut tracked_rows = tracked_rows.flat_map(|t| t.values.chunks_exact(columns.len()));
         let learned = Learned {
+            centre: Centre::from_laws(&laws, [3, 4, 5].map(|c| mean(&samples.column(c))))?,
             along: [along(&mut tracked_rows), along(&mut truth.iter().map(|row| &row[..]))],
             truth: (0..3).map(|place| BestLinear::of(&truth, place)).collect(),
             deviation: mean(&deviations(&samples, &laws, None)),
@@ -128,7 +137,7 @@ pub(super) fn run(
     let every = far.len().div_ceil(CLOUD).max(1);
     let cloud = rows.zip(far).step_by(every);
     let cloud = cloud.map(|(row, far)| ([row[0], row[1], row[2]], far)).collect();
-    Ok(Run { person: index, skin, free, learned: [gait, crouch], cloud, unseen: vec![] })
+    Ok(Run { person: index, skin, free, sizes, learned: [gait, crouch], cloud, unseen: vec![] })
 }
 
 /// How far the centre is from that of laws, frame by frame; of the laws of one variety on its own trials.
