@@ -3,6 +3,7 @@
 import { type Said } from "./core";
 import type { App } from "./app";
 import { element } from "./dom";
+import { Handle } from "./handle";
 
 type Path = (string | number)[];
 
@@ -67,8 +68,12 @@ class Panel {
   private all = false;
   private readonly open = new Set<string>();
   private find = "";
+  private handles = false;
+  private readonly handle: Handle;
 
-  constructor(private readonly app: App) {}
+  constructor(private readonly app: App) {
+    this.handle = new Handle(app);
+  }
 
   /** Reads the list anew. */
   async load(): Promise<void> {
@@ -98,6 +103,12 @@ class Panel {
       this.all = every.checked;
       this.build();
     });
+    const handles = element("input", { type: "checkbox", id: "handles", checked: this.handles });
+    handles.addEventListener("change", () => {
+      this.handles = handles.checked;
+      this.hold(listed);
+    });
+    this.hold(listed);
     const most = 120;
     const list = [...groups].slice(0, most).map(([name, group]) => this.group(name, group));
     const where = listed.there ? listed.file : `${listed.file} (made by the first edit)`;
@@ -112,12 +123,24 @@ class Panel {
         element("button", { id: "text-redo", disabled: !listed.redo, onclick: () => void this.send("redo", {}) }, "redo"),
         " ",
         element("label", {}, every, " all of the model"),
+        " ",
+        element("label", {}, handles, " handles"),
       ),
       search,
       ...list,
       groups.size > most ? element("p", { class: "soft" }, `and ${groups.size - most} more: find them by name`) : "",
       this.adding(),
     );
+  }
+
+  /** Shows handles of the selected segment’s place in its parent, if its text gives one. */
+  private hold(listed: Listed): void {
+    const segment = this.app.selected === null ? null : this.app.model?.about.segments[this.app.selected];
+    const numbers = [0, 1, 2].map((axis) => listed.values.find(({ path }) => path.length === 4 && path[0] === "segment" && path[1] === segment?.name && path[2] === "at" && path[3] === axis));
+    const [x, y, z] = numbers;
+    if (!this.handles || !segment || !x || !y || !z) return this.handle.hold(null);
+    const moved = (axis: number, value: number) => void this.set(numbers[axis]!.path, value);
+    this.handle.hold({ frame: segment.parent, at: [x.value, y.value, z.value], moved });
   }
 
   /** The numbers of what is selected: of the segment, of its joint set, of markers and shapes on it. */

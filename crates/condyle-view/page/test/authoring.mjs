@@ -192,6 +192,33 @@ await test("the mirrored side follows, a constant is asked about, and edits are 
   await end();
 });
 
+await test("a handle moves a bone, and one number of the file", async () => {
+  const file = join(folder, "handle.toml");
+  writeFileSync(file, LEG);
+  const { page, end } = await viewed(file);
+  await page.evaluate(() => {
+    const { about } = window.condyle.model;
+    window.condyle.select(about.segments.findIndex((s) => s.name === "shank_r"));
+    window.condyle.view.look(window.condyle.box(), "front");
+    window.condyle.view.now();
+  });
+  await page.click("#handles");
+  const end_ = page.locator("[data-handle=y]");
+  await until("the handle", async () => (await end_.boundingBox()) !== null);
+  const box = await end_.boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let i = 1; i <= 5; i++) await page.mouse.move(x, y - 4 * i);
+  await page.mouse.up();
+  await until("the file", () => readFileSync(file, "utf8") !== LEG);
+  const [old, now] = difference(LEG, readFileSync(file, "utf8"));
+  const value = Number(/at = \[0, (\S+), 0.083\]/.exec(readFileSync(file, "utf8"))?.[1]);
+  check(value > -0.42 && value < 0.4, `${old} became ${now}`);
+  check(readFileSync(file, "utf8") === LEG.replace("-0.420", String(value)), "that number alone");
+  await end();
+});
+
 await test("a file that an editor breaks is told with its line, and mended", async () => {
   const file = join(folder, "broken.toml");
   writeFileSync(file, LEG);
