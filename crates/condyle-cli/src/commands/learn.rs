@@ -1,5 +1,6 @@
 //! `condyle learn`: models from recordings: limits of joints, and laws that couple coordinates.
 
+mod compare;
 mod coupling;
 mod joint;
 
@@ -33,6 +34,8 @@ enum What {
     Limits(Box<Limits>),
     /// Learn how coordinates follow others, from trials.
     Coupling(Box<coupling::Coupling>),
+    /// Compare a learned joint with others on trials that are left out.
+    Compare(Box<compare::Compare>),
     /// Make a model with a free joint from a standing trial.
     Joint(Box<joint::Joint>),
 }
@@ -136,6 +139,7 @@ impl Learn {
         match self.what {
             What::Limits(limits) => limits.run(),
             What::Coupling(coupling) => coupling.run(),
+            What::Compare(compare) => compare.run(),
             What::Joint(joint) => joint.run(),
         }
     }
