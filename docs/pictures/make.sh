@@ -29,7 +29,7 @@ for motion in through-thorax:front too-far-back:side; do
     "$condyle" convert "$here/$name.json" "$work/$name.mot" --model human --rate 60
     "$condyle" constrain human "$work/$name.mot" -o "$work/$name-legal.mot"
     for which in "" -legal; do
-        "$condyle" render human "$work/$name$which.mot" --sheet 6 --limits off --view "$view" --at humerus_r,thorax,hand_r --zoom 1.6 --size 1200x280 -o "$here/$name$which.png"
+        "$condyle" render human "$work/$name$which.mot" --sheet 6 --limits off --view "$view" --at humerus_r,thorax,hand_r --zoom 1.35 --size 1200x280 -o "$here/$name$which.png"
     done
 done
 rm -r "$work"

@@ -28,6 +28,15 @@ pub(crate) fn run(context: &Context, arguments: &[&str]) -> Result<(), String> {
     tool::run(context, command(context).args(arguments))
 }
 
+/// The folder of what cargo builds.
+pub(crate) fn target_folder(context: &Context) -> Result<PathBuf, String> {
+    let mut command = command(context);
+    command.args(["metadata", "--format-version", "1", "--no-deps"]);
+    let answer = tool::output(context, &mut command)?;
+    let answer: Value = serde_json::from_str(&answer).map_err(|error| error.to_string())?;
+    Ok(text(&answer, "target_directory")?.into())
+}
+
 /// A package of a workspace.
 pub(crate) struct Package {
     /// Its name.

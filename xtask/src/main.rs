@@ -1,11 +1,12 @@
 //! The project's checks, with the same command on a laptop and in CI.
 //!
 //! `cargo xtask ci` runs them all, `cargo xtask NAME` one of them; each has a file in `checks/`.
-//! `cargo xtask instructions --bless` rewrites the committed counts.
+//! `cargo xtask instructions --bless` rewrites the committed counts, `cargo xtask papers` makes the figures of the papers.
 
 mod cargo;
 mod checks;
 mod outcome;
+mod papers;
 mod tool;
 #[cfg(test)]
 mod workspace;
@@ -17,6 +18,11 @@ use std::time::Instant;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let [first, rest @ ..] = &arguments[..]
+        && first == "papers"
+    {
+        return papers(rest);
+    }
     let bless = arguments.iter().any(|argument| argument == "--bless");
     let names: Vec<&str> =
         arguments.iter().map(String::as_str).filter(|name| *name != "--bless").collect();
@@ -61,13 +67,36 @@ fn main() -> ExitCode {
     if failed.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
+/// `papers [FOLDER] [--only NAME]`.
+fn papers(arguments: &[String]) -> ExitCode {
+    let context = Context { root: cargo::root(), bless: false, trial: None };
+    let texts: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let made = match texts[..] {
+        [] => papers::run(&context, None, None),
+        [folder] if !folder.starts_with('-') => papers::run(&context, Some(folder), None),
+        ["--only", name] => papers::run(&context, None, Some(name)),
+        [folder, "--only", name] => papers::run(&context, Some(folder), Some(name)),
+        _ => {
+            usage();
+            return ExitCode::from(2);
+        }
+    };
+    match made {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(why) => {
+            eprintln!("{why}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
 fn listed(names: &[&str]) -> String {
     if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) }
 }
 
 fn usage() {
     eprintln!(
-        "usage: cargo xtask ci | CHECK | instructions --bless\n\nchecks, in the order of ci:"
+        "usage: cargo xtask ci | CHECK | instructions --bless | papers [FOLDER] [--only NAME]\n\nchecks, in the order of ci:"
     );
     for check in CHECKS {
         eprintln!("  {:<13} {}", check.name, check.what);

@@ -8,6 +8,7 @@
 //! | [`frames`] | orientations of segments from markers, by a recipe |
 //! | [`rotations`] | orientations of segments from tables, inertial sensors and motions |
 //! | [`limits`] | limits of joints from orientations |
+//! | [`study`] | virtual people whose knees are known, for the study of Pronost et al. 2010 |
 
 pub mod arms;
 pub mod calibration;
@@ -15,3 +16,4 @@ pub mod coupling;
 pub mod frames;
 pub mod limits;
 pub mod rotations;
+pub mod study;

@@ -1,7 +1,7 @@
 //! What a bone looks like.
 
 use crate::{Ball, Block, Mesh, Plate, Rib, Spindle, Station, Tube};
-use condyle_math::Vec3;
+use condyle_math::{Growth, Vec3};
 
 /// A surface by a few numbers, in the frame of its segment; lengths in metres.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,33 +80,48 @@ impl Form {
         }
     }
 
-    /// The same form with every length times a factor.
+    /// The same form of a body that has grown. A section keeps its shape: what is thin grows with the mean where its direction
+    /// is not one number's.
     #[must_use]
-    pub fn grown(&self, factor: f64) -> Self {
-        let both = |radii: [f64; 2]| radii.map(|r| r * factor);
+    pub fn grown(&self, by: &Growth) -> Self {
+        let column = |turn: condyle_math::Mat3, axis| by.length(turn * axis);
+        let each = |turn, v: Vec3| {
+            let factors = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| column(turn, axis));
+            v.times(Vec3::from(factors))
+        };
         match self {
-            Self::Ball(b) => Self::Ball(Ball { at: b.at * factor, radii: b.radii * factor, ..*b }),
-            Self::Block(b) => Self::Block(Block { at: b.at * factor, size: b.size * factor, ..*b }),
-            Self::Tube(tube) => Self::Tube(Tube {
-                stations: tube
-                    .stations
-                    .iter()
-                    .map(|s| Station { at: s.at * factor, radii: both(s.radii) })
-                    .collect(),
-                across: tube.across,
-            }),
+            Self::Ball(b) => {
+                Self::Ball(Ball { at: by.point(b.at), radii: each(b.turn, b.radii), ..*b })
+            }
+            Self::Block(b) => {
+                Self::Block(Block { at: by.point(b.at), size: each(b.turn, b.size), ..*b })
+            }
+            Self::Tube(tube) => {
+                let across = by.length(tube.across.normalized());
+                let station = |s: &Station| Station {
+                    at: by.point(s.at),
+                    radii: [s.radii[0] * across, s.radii[1] * by.mean()],
+                };
+                Self::Tube(Tube {
+                    stations: tube.stations.iter().map(station).collect(),
+                    across: tube.across,
+                })
+            }
             Self::Plate(plate) => Self::Plate(Plate {
-                outline: plate.outline.iter().map(|p| *p * factor).collect(),
-                middle: plate.middle * factor,
-                thickness: plate.thickness * factor,
+                outline: plate.outline.iter().map(|p| by.point(*p)).collect(),
+                middle: by.point(plate.middle),
+                thickness: plate.thickness * by.mean(),
             }),
             Self::Rib(rib) => Self::Rib(Rib {
-                at: rib.at * factor,
-                chord: rib.chord * factor,
-                radii: both(rib.radii),
+                at: by.point(rib.at),
+                chord: rib.chord * by.length(rib.along.normalized()),
+                along: by.direction(rib.along),
+                radii: rib.radii.map(|r| r * by.mean()),
                 ..*rib
             }),
-            Self::Spindle(s) => Self::Spindle(Spindle { from: s.from * factor, to: s.to * factor }),
+            Self::Spindle(s) => {
+                Self::Spindle(Spindle { from: by.point(s.from), to: by.point(s.to) })
+            }
         }
     }
 

@@ -78,6 +78,8 @@ const NAME_TABLES: &[(&str, &str)] = &[
 const RECIPES: &[(&str, &str)] = &[
     ("hip", include_str!("../recipes/hip.toml")),
     ("hip-left", include_str!("../recipes/hip-left.toml")),
+    ("knee-isb", include_str!("../recipes/knee-isb.toml")),
+    ("knee-isb-left", include_str!("../recipes/knee-isb-left.toml")),
     ("shoulder-herda2003", include_str!("../recipes/shoulder-herda2003.toml")),
     ("shoulder-herda2003-left", include_str!("../recipes/shoulder-herda2003-left.toml")),
     ("shoulder-isb", include_str!("../recipes/shoulder-isb.toml")),

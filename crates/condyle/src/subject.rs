@@ -159,6 +159,61 @@ pub fn scale(text: &str, asked: &Asked<'_>) -> Result<Subject, Error> {
     Ok(Subject { text, factors, measurements, report, placed, warnings })
 }
 
+/// A model that is no file of OpenSim, of a person.
+#[derive(Clone, Debug)]
+pub struct SubjectModel {
+    /// The model.
+    pub model: Model,
+    /// The factors of segments.
+    pub factors: Factors,
+    /// What was measured.
+    pub measurements: Vec<Measured>,
+    /// The placing of markers, where it was asked for.
+    pub placed: Option<Placed>,
+    /// Warnings.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Scales a model of any format by the same setups ([`Model::scaled_along`]), and places its markers.
+///
+/// Bodies are segments by name; a mass is left, as a model has none. No marker is fixed.
+///
+/// # Errors
+/// As [`scale`].
+pub fn scale_model(model: &Model, asked: &Asked<'_>) -> Result<SubjectModel, Error> {
+    let mut warnings = vec![];
+    let (mut factors, mut measurements) = (Factors::new(), vec![]);
+    let mut scaled = model.clone();
+    if let Some(scaler) = &asked.setup.scaler {
+        (factors, measurements) = factors_of(model, scaler, asked.measured, &mut warnings)?;
+        let mut rows = vec![[1.0; 3]; model.segments().len()];
+        for (name, &own) in &factors {
+            match model.find_segment(name) {
+                Ok(id) => rows[id.index()] = own,
+                Err(error) => {
+                    let message = format!("factors of `{name}` are not used: {error}");
+                    warnings.push(Diagnostic::warning("scale/unknown-body", message));
+                }
+            }
+        }
+        scaled = model.scaled_along(&rows);
+    }
+    let mut placed = None;
+    if let Some(placer) = &asked.setup.placer {
+        let (found, moved) = stand(scaled, &[], placer, asked, &mut warnings)?;
+        let in_body = |name: &str| moved.iter().find(|place| place.name == name);
+        let points: Vec<Option<Vec3>> = found
+            .model
+            .markers()
+            .iter()
+            .map(|marker| in_body(&marker.name).map(|place| place.in_body.into()))
+            .collect();
+        scaled = found.model.with_markers_at(&points);
+        placed = Some(found);
+    }
+    Ok(SubjectModel { model: scaled, factors, measurements, placed, warnings })
+}
+
 /// How much a loop counts against coordinates that leave their defaults: by so much that it is closed to
 /// a thousandth of a millimetre.
 const CLOSED: f64 = 1e9;
@@ -363,9 +418,25 @@ fn place(
     rules: &ScaleRules,
     warnings: &mut Vec<Diagnostic>,
 ) -> Result<(String, Placed), Error> {
+    let model = scale::model_of(&text)?.value;
+    let (placed, moved) = stand(model, &fixed_markers(&text)?, placer, asked, warnings)?;
+    let mut text = with_markers_at(&text, &moved)?;
+    if rules.as_opensim && !placed.unseen.is_empty() {
+        text = without_markers(&text, &placed.unseen)?;
+    }
+    Ok((text, placed))
+}
+
+/// The weighted pose of a scaled model, and where its markers were recorded in their bodies.
+fn stand(
+    model: Model,
+    fixed: &[String],
+    placer: &Placer,
+    asked: &Asked<'_>,
+    warnings: &mut Vec<Diagnostic>,
+) -> Result<(Placed, Vec<MarkerPlace>), Error> {
     let recording = asked.stands.ok_or_else(|| no_recording("markers are placed"))?;
     let still = averaged(recording, placer)?;
-    let model = scale::model_of(&text)?.value;
     let request = request_of(placer, asked.coordinates);
     let job = Job::new(model.clone(), &still, &request)?;
     let tracking = job.run(&mut |_, _| {});
@@ -386,7 +457,6 @@ fn place(
     let program = Program::compile(&model);
     let mut pose = Pose::new(&program);
     let _ = program.evaluate(&posture, Mode::Open, &mut pose);
-    let fixed = fixed_markers(&text)?;
     let (mut markers, mut unseen, mut moved) = (vec![], vec![], vec![]);
     for marker in model.markers() {
         let label = still.labels.iter().position(|label| *label == marker.name);
@@ -406,10 +476,6 @@ fn place(
             moved.push(MarkerPlace { name: marker.name.clone(), in_body });
         }
     }
-    let mut text = with_markers_at(&text, &moved)?;
-    if rules.as_opensim && !unseen.is_empty() {
-        text = without_markers(&text, &unseen)?;
-    }
     let placed = Placed {
         posture,
         time: still.times.first().copied().unwrap_or(0.0),
@@ -419,7 +485,7 @@ fn place(
         unseen,
         model,
     };
-    Ok((text, placed))
+    Ok((placed, moved))
 }
 
 fn request_of(placer: &Placer, values: Option<&Table>) -> Request {

@@ -3,6 +3,7 @@
 mod compare;
 mod coupling;
 mod joint;
+mod study;
 
 mod given;
 
@@ -38,6 +39,8 @@ enum What {
     Compare(Box<compare::Compare>),
     /// Make a model with a free joint from a standing trial.
     Joint(Box<joint::Joint>),
+    /// Remake the study of Pronost et al. 2010 with virtual people whose knees are known.
+    Study(study::Study),
 }
 
 /// How a limit is learned.
@@ -141,6 +144,7 @@ impl Learn {
             What::Coupling(coupling) => coupling.run(),
             What::Compare(compare) => compare.run(),
             What::Joint(joint) => joint.run(),
+            What::Study(study) => study.run(),
         }
     }
 }

@@ -22,7 +22,7 @@ pub(crate) struct Scale {
     /// A marker recording of the person standing still; with a setup instead of those that it names.
     #[arg(long = "static", value_name = "TRIAL", required_unless_present = "setup")]
     trial: Option<PathBuf>,
-    /// The scaled model, or `-`: a document (.toml); with a setup an `.osim`, which is the model's own file.
+    /// The scaled model, or `-`: a document (.toml); an `.osim` with a setup comes back as its own file.
     #[arg(short, long, value_name = "SUBJECT")]
     output: PathBuf,
     /// Whose markers are meant, where the labels of several people begin with their names: `Anna:RFHD`.
@@ -34,7 +34,8 @@ pub(crate) struct Scale {
     /// Keep the markers of the scaled model instead of moving them to where they were recorded.
     #[arg(long)]
     keep_markers: bool,
-    /// A setup of OpenSim's scaling, for a model that is an `.osim`.
+    /// A setup of OpenSim's scaling: factors along the axes of each body, by measurements or by hand. Bodies and markers are those of the
+    /// model.
     #[arg(long, value_name = "SCALE.xml")]
     setup: Option<PathBuf>,
     /// The mass of the person, instead of the setup's.

@@ -30,6 +30,7 @@ mod shipped;
 mod skeleton;
 #[cfg(unix)]
 mod standard_input;
+mod study;
 mod track;
 mod upkeep;
 

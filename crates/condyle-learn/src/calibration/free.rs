@@ -4,8 +4,13 @@
 //! the same axes there, so that all angles are 0; six coordinates lead from the parent to the child, three translations of the
 //! joint's centre along the parent's axes and three rotations in an order that is told. The parent moves freely in the
 //! laboratory.
+//!
+//! Where a trial shows the joint moving, its axis or its centre may come from there ([`Functional`](super::Functional)), and the axes of
+//! both segments from a recipe, such as those of the International Society of Biomechanics; parent and child have different axes
+//! then, and the angles of the standing person are not 0.
 
-use super::Cluster;
+use super::{Cluster, Functional};
+use crate::frames::Recipe;
 use condyle_diagnostics::Error;
 use condyle_math::{Affine, EulerOrder, Mat3, Vec3};
 use condyle_model::{CoordinateKind, JointSetId, Model, ModelBuilder, Signal};
@@ -36,6 +41,17 @@ pub struct FreeJoint {
     pub order: EulerOrder,
     /// Names of the rotations, in that order.
     pub angles: [String; 3],
+    /// The axes of the child and of its reference, which is the parent; without it both have those of the landmarks.
+    pub axes: Option<Recipe>,
+}
+
+/// The frames of a joint in the laboratory while the person stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Standing {
+    /// The parent's, at its origin.
+    pub parent: Affine,
+    /// The child's, at the joint's centre.
+    pub child: Affine,
 }
 
 impl FreeJoint {
@@ -57,14 +73,24 @@ impl FreeJoint {
             left: false,
             order: grood_suntay(),
             angles: ["flexion", "adduction", "rotation"].map(str::to_owned),
+            axes: None,
         }
     }
 
-    /// The joint's frame in the laboratory while the person stands.
+    /// The frames of parent and child while the person stands, with the axis or the centre that a motion of the joint shows.
+    ///
+    /// z goes along the ends to the right, y in the plane of both and the origin upwards, x forward. An axis that was found takes the place
+    /// of the ends; the centre is its point nearest to their middle. A centre that was found takes the place of the middle. A recipe of
+    /// axes gives the directions, whatever the axis is.
     ///
     /// # Errors
-    /// `calibration/marker` for a landmark that no frame of the trial shows, `calibration/frame` where the landmarks lie on a line.
-    pub fn frame(&self, standing: &Recording) -> Result<Affine, Error> {
+    /// `calibration/marker` for a landmark that no frame of the trial shows, `calibration/frame` where the landmarks lie on a line;
+    /// those of [`Recipe::standing`].
+    pub fn frames(
+        &self,
+        standing: &Recording,
+        functional: Option<&Functional>,
+    ) -> Result<Standing, Error> {
         let of = |label: &String| {
             Cluster::standing(standing, &[label]).point(label).ok_or_else(|| {
                 let message = format!("the standing trial shows no `{label}`");
@@ -73,8 +99,17 @@ impl FreeJoint {
             })
         };
         let [medial, lateral, top] = [of(&self.ends[0])?, of(&self.ends[1])?, of(&self.origin)?];
-        let side = if self.left { medial - lateral } else { lateral - medial };
-        let centre = (medial + lateral) * 0.5;
+        let mut side = if self.left { medial - lateral } else { lateral - medial };
+        let mut centre = (medial + lateral) * 0.5;
+        match functional {
+            None => {}
+            Some(Functional::Centre(found)) => centre = found.place,
+            Some(Functional::Axis(found)) => {
+                let along = found.direction * found.direction.dot(side).signum();
+                centre = found.place + along * along.dot(centre - found.place);
+                side = along;
+            }
+        }
         let up = top - centre;
         let z = side.normalized();
         let y = up - z * z.dot(up);
@@ -83,8 +118,16 @@ impl FreeJoint {
             return Err(Error::new("calibration/frame", message));
         }
         let y = y.normalized();
-        let axes = Mat3::from_columns(y.cross(z), y, z);
-        Ok(Affine::from_translation(centre) * Affine::from_rotation(axes))
+        let landmarks = Mat3::from_columns(y.cross(z), y, z);
+        let (parent, child) = match &self.axes {
+            None => (landmarks, landmarks),
+            Some(recipe) => {
+                let (reference, child) = recipe.standing(standing)?;
+                (reference.unwrap_or(landmarks), child)
+            }
+        };
+        let at = |place, axes| Affine::from_translation(place) * Affine::from_rotation(axes);
+        Ok(Standing { parent: at(top, parent), child: at(centre, child) })
     }
 
     /// How far a marker of the joint is from its mean in the standing trial at most, in metres: of a person who stands still
@@ -107,12 +150,17 @@ impl FreeJoint {
     /// The model: parent and child with their markers where the standing trial has them.
     ///
     /// # Errors
-    /// Those of [`Self::frame`]; `calibration/cluster` where a segment has fewer than three markers in the trial.
+    /// Those of [`Self::frames`]; `calibration/cluster` where a segment has fewer than three markers in the trial.
     pub fn model(&self, standing: &Recording) -> Result<Model, Error> {
-        let joint = self.frame(standing)?;
-        let origin = Cluster::standing(standing, &[&self.origin]);
-        let corner = origin.point(&self.origin).unwrap_or(joint.translation);
-        let parent_frame = Affine { translation: corner, ..joint };
+        self.model_at(standing, &self.frames(standing, None)?)
+    }
+
+    /// The same with frames that are given.
+    ///
+    /// # Errors
+    /// `calibration/cluster` where a segment has fewer than three markers in the trial.
+    pub fn model_at(&self, standing: &Recording, frames: &Standing) -> Result<Model, Error> {
+        let Standing { parent: parent_frame, child: joint } = *frames;
         let mut b = ModelBuilder::new(&self.name);
         let [above, below] = &self.segments;
         let parent = b.segment(above, None);

@@ -205,6 +205,47 @@ impl Recipe {
         }
         Ok(said)
     }
+
+    /// The axes of the reference, if the recipe has one, and of the child, as columns in the laboratory, of a person who stands: each place
+    /// is the mean of its markers over all frames that show them.
+    ///
+    /// # Errors
+    /// `recipe/marker` if the recording lacks a marker of the recipe, or shows it in no frame; `recipe/ill-conditioned` where directions are
+    /// nearly parallel.
+    pub fn standing(&self, recording: &Recording) -> Result<(Option<Mat3>, Mat3), Error> {
+        let found = Found::new(self, recording, None)?;
+        let mean = |marker: usize| {
+            let seen: Vec<Vec3> = (0..recording.frames())
+                .filter_map(|frame| recording.position(frame, marker).map(Vec3::from))
+                .collect();
+            let sum = seen.iter().fold(Vec3::zero(), |sum, place| sum + *place);
+            (!seen.is_empty()).then(|| sum * (1.0 / seen.len() as f64))
+        };
+        let place = |name: &str| {
+            let (_, markers) =
+                found.places.iter().find(|(place, _)| place == name).ok_or(Failed::Missing)?;
+            let mut sum = Vec3::zero();
+            for &marker in markers {
+                sum += mean(marker).ok_or(Failed::Missing)?;
+            }
+            Ok(sum * (1.0 / markers.len() as f64))
+        };
+        let least = self.least_angle.sin();
+        let of = |frame: &FrameRecipe| {
+            axes(frame, least, &place).map_err(|failed| match failed {
+                Failed::Missing => {
+                    let message = format!("no frame shows all markers of `{}`", frame.name);
+                    Error::new("recipe/marker", message)
+                }
+                Failed::IllConditioned => {
+                    let message =
+                        format!("directions that span `{}` are nearly parallel", frame.name);
+                    Error::new("recipe/ill-conditioned", message)
+                }
+            })
+        };
+        Ok((self.reference.as_ref().map(of).transpose()?, of(&self.child)?))
+    }
 }
 
 /// The axes of a segment in the laboratory, as columns.

@@ -37,7 +37,7 @@ impl ConstantCurvature {
 
 impl Contract for ConstantCurvature {
     fn geometry(&mut self) -> Vec<Geometry<'_>> {
-        vec![Geometry::Length(&mut self.length)]
+        vec![Geometry::Length(&mut self.length, Vec3::Y)]
     }
 
     fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {

@@ -37,7 +37,8 @@ impl Ellipsoid {
 impl Contract for Ellipsoid {
     fn geometry(&mut self) -> Vec<Geometry<'_>> {
         let Vec3 { x, y, z } = &mut self.radii;
-        [x, y, z].map(Geometry::Length).into()
+        let axes = [Vec3::X, Vec3::Y, Vec3::Z];
+        [x, y, z].into_iter().zip(axes).map(|(r, axis)| Geometry::Length(r, axis)).collect()
     }
 
     fn mirror(&mut self, at: Reflection) -> Result<Mirrored, String> {

@@ -105,7 +105,7 @@ pub(crate) use numbers::{ErasedNumbers, MOST_NUMBERS, NumberDual, Numbers};
 use crate::limit::Limit;
 use crate::position::{JointSetId, SegmentId};
 use condyle_diagnostics::Severity;
-use condyle_math::{Affine, Scalar, Vec3};
+use condyle_math::{Affine, Growth, Scalar, Vec3};
 
 /// A component of a joint set: a law, and where its inputs come from.
 #[derive(Clone, Debug, PartialEq)]
@@ -184,9 +184,9 @@ pub(crate) trait Contract {
         vec![]
     }
 
-    /// Multiplies the lengths that it holds: by the factor of its joint, which is that of the parent of
-    /// the segment that it moves, or by those of the segments at its ports, in their order.
-    fn grow(&mut self, joint: f64, segments: &[f64]) {
+    /// Changes the lengths that it holds: with the growth of its joint, which is that of the parent of
+    /// the segment that it moves seen from the joint's frame, or of the segments at its ports, in their order.
+    fn grow(&mut self, joint: &Growth, segments: &[Growth]) {
         self.geometry().into_iter().for_each(|part| part.grow(joint, segments));
     }
 
@@ -430,9 +430,8 @@ impl Law {
         self.contract_mut().geometry().into_iter().filter_map(Geometry::direction)
     }
 
-    /// Multiplies the lengths that it holds: by the factor of its joint, or by those of the segments at
-    /// its ports.
-    pub(crate) fn grow(&mut self, joint: f64, segments: &[f64]) {
+    /// Changes the lengths that it holds with the growth of its joint, or of the segments at its ports.
+    pub(crate) fn grow(&mut self, joint: &Growth, segments: &[Growth]) {
         self.contract_mut().grow(joint, segments);
     }
 

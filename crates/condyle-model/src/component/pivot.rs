@@ -25,9 +25,10 @@
 //! order h. Generator: the rotation (a, c × a) about the centre. Kinks: at the ends of intervals
 //! the centre, and with it the derivative, is discontinuous.
 
+use super::geometry::grow_path;
 use super::{Contract, Geometry, Kind, Mirrored, MotionLaw, Port, PortType, Reflection};
 use condyle_math::function::SimmSpline;
-use condyle_math::{Affine, Lane, Mat3, Scalar, Vec3};
+use condyle_math::{Affine, Growth, Lane, Mat3, Scalar, Vec3};
 
 /// A hinge with a moving centre, like the knee.
 #[derive(Clone, Debug, PartialEq)]
@@ -261,10 +262,10 @@ impl Contract for Pivot {
         vec![]
     }
 
-    fn grow(&mut self, joint: f64, _: &[f64]) {
+    fn grow(&mut self, joint: &Growth, _: &[Growth]) {
         self.change(self.axis, |centre| match centre {
-            Centre::Intervals(list) => list.iter_mut().for_each(|(_, at)| *at = *at * joint),
-            Centre::Path(path) => path.iter_mut().for_each(|spline| spline.stretch(joint, 1.0)),
+            Centre::Intervals(list) => list.iter_mut().for_each(|(_, at)| *at = joint.point(*at)),
+            Centre::Path(path) => grow_path(path, joint),
         });
     }
 

@@ -1,18 +1,20 @@
 //! Scaling of a model: every length fixed in a bone is scaled with that bone.
 //!
-//! With a factor s for each segment, 1 for the world:
+//! With three factors for each segment along its axes, S = diag(f), 1 for the world:
 //!
 //! ```text
-//! joint in the parent      translation · s(parent)
-//! joint in the segment     translation · s(segment)
-//! marker, end of a loop    point · s(its segment)
-//! shape                    every length · s(its segment)
-//! length inside a joint    · s(parent)
+//! joint in the parent      S(parent) · translation
+//! joint in the segment     S(segment) · translation
+//! marker, end of a loop    S(its segment) · point
+//! shape                    S(its segment) · points, |S a| · length along a
+//! length inside a joint    the same with Rᵀ S(parent) R, R the joint's frame in the parent
+//! translation along a      |S a| · distance, along S a/|S a|
 //! ```
 //!
-//! Directions, angles and everything without a unit are unchanged. So with one factor for all
-//! segments, the distance of every point from the root is multiplied by it, and no rotation
-//! changes.
+//! Angles, other directions and everything without a unit are unchanged. A length without a direction, such as the thickness of a
+//! plate, a gap or a distance of a loop, is multiplied by the mean of the three. Lengths after a rotation of the joint are scaled as where
+//! the joint does not turn: with unequal factors a bone is stretched in its own rest, not in the laboratory. So with one factor for all
+//! segments, the distance of every point from the root is multiplied by it, and no rotation changes.
 //!
 //! Lengths inside a joint are the places of [`Place`](crate::component::Place), the centres of
 //! [`Pivot`](crate::component::Pivot)s, semi-axes and arcs, and what a [`Map`](crate::component::Map) or a
@@ -29,7 +31,7 @@ use super::{Condition, CoordinateKind, Model, SegmentId};
 use crate::component::{Component, Correlate, Law, Signal};
 use condyle_diagnostics::{Diagnostic, Subject};
 use condyle_math::function::{FunctionOfSeveral, MultivariatePolynomial};
-use condyle_math::{Affine, Vec3};
+use condyle_math::{Affine, Growth, Vec3};
 use std::collections::{BTreeMap, HashMap};
 
 /// Segments with a common scale factor, such as the bones of both thighs.
@@ -85,10 +87,31 @@ impl Model {
     /// ```
     #[must_use]
     pub fn scaled(&self, factors: &[f64]) -> Self {
-        let usable = |&f: &f64| f > 0.0 && f.is_finite();
-        let of = |id: Option<SegmentId>| -> f64 {
+        let factors: Vec<[f64; 3]> = factors.iter().map(|&factor| [factor; 3]).collect();
+        self.scaled_along(&factors)
+    }
+
+    /// The same with a factor along each axis of each segment.
+    ///
+    /// A translation along an oblique axis goes along the grown axis. Three equal factors do what one does, to the bit.
+    ///
+    /// ```
+    /// use condyle_math::Vec3;
+    /// use condyle_model::ModelBuilder;
+    ///
+    /// let mut b = ModelBuilder::new("leg");
+    /// let thigh = b.segment("thigh", None);
+    /// b.marker("knee", Some(thigh), Vec3::new(0.01, -0.4, 0.05));
+    /// // Longer, and no wider.
+    /// let model = b.build().unwrap().scaled_along(&[[1.0, 1.1, 1.0]]);
+    /// assert!((model.markers()[0].point - Vec3::new(0.01, -0.44, 0.05)).norm() < 1e-15);
+    /// ```
+    #[must_use]
+    pub fn scaled_along(&self, factors: &[[f64; 3]]) -> Self {
+        let usable = |&f: &[f64; 3]| f.iter().all(|f| *f > 0.0 && f.is_finite());
+        let of = |id: Option<SegmentId>| -> Growth {
             let own = id.and_then(|id| factors.get(id.index()).copied());
-            own.filter(usable).unwrap_or(1.0)
+            own.filter(usable).map_or(Growth::NONE, Growth::along_axes)
         };
         let mut model = self.clone();
         for (index, segment) in model.segments.iter_mut().enumerate() {
@@ -96,25 +119,33 @@ impl Model {
             grow(&mut segment.joint_in_segment, of(Some(SegmentId(index as u32))));
         }
         for marker in &mut model.markers {
-            marker.point = marker.point * of(marker.segment);
+            marker.point = of(marker.segment).point(marker.point);
         }
         for shape in &mut model.shapes {
-            let factor = of(Some(shape.segment));
-            if factor != 1.0 {
-                shape.form = shape.form.grown(factor);
+            let growth = of(Some(shape.segment));
+            if !growth.is_none() {
+                shape.form = shape.form.grown(&growth);
             }
             if let Some((segment, point)) = &mut shape.until {
-                *point = *point * of(Some(*segment));
+                *point = of(Some(*segment)).point(*point);
             }
         }
-        let of_component: Vec<f64> =
-            self.joints_of_components().iter().map(|j| j.map_or(1.0, of)).collect();
-        for (component, &factor) in model.components.iter_mut().zip(&of_component) {
+        // Seen from the joint's frame.
+        let of_joint = |id: SegmentId| {
+            let segment = self.segment(id);
+            of(segment.parent).within(segment.joint_in_parent.linear)
+        };
+        let of_component: Vec<Growth> = self
+            .joints_of_components()
+            .iter()
+            .map(|joint| joint.map_or(Growth::NONE, of_joint))
+            .collect();
+        for (component, growth) in model.components.iter_mut().zip(&of_component) {
             let segments = component.inputs.iter().filter_map(|signal| signal.segment());
-            let segments: Vec<f64> = segments.map(|id| of(Some(id))).collect();
+            let segments: Vec<Growth> = segments.map(|id| of(Some(id))).collect();
             // Untouched where nothing changes, so that factor 1 keeps every bit.
-            if factor != 1.0 || segments.iter().any(|&factor| factor != 1.0) {
-                component.law.grow(factor, &segments);
+            if !growth.is_none() || segments.iter().any(|growth| !growth.is_none()) {
+                component.law.grow(growth, &segments);
             }
         }
         let of_coordinate = model.grow_distances(&of_component);
@@ -153,16 +184,16 @@ impl Model {
         Self { name: name.to_owned(), ..self.clone() }
     }
 
-    /// For each component the parent of the first segment that it moves; `None` if it moves nothing.
-    fn joints_of_components(&self) -> Vec<Option<Option<SegmentId>>> {
+    /// For each component the first segment that it moves; `None` if it moves nothing.
+    fn joints_of_components(&self) -> Vec<Option<SegmentId>> {
         let mut found = vec![None; self.components.len()];
-        for segment in &self.segments {
+        for (index, segment) in self.segments.iter().enumerate() {
             let mut open: Vec<Signal> = segment.motion.into_iter().collect();
             while let Some(source) = open.pop() {
                 match source {
                     Signal::Coordinate(id) => open.extend(self.coordinate(id).follows),
                     Signal::Output(id, _) if found[id.index()].is_none() => {
-                        found[id.index()] = Some(segment.parent);
+                        found[id.index()] = Some(SegmentId(index as u32));
                         open.extend(self.components[id.index()].values());
                     }
                     Signal::Output(..) | Signal::Segment(_) => {}
@@ -176,12 +207,14 @@ impl Model {
     /// distance.
     ///
     /// A number that is read as a distance and as something else becomes two outputs.
-    fn grow_distances(&mut self, of_component: &[f64]) -> Vec<f64> {
+    fn grow_distances(&mut self, of_component: &[Growth]) -> Vec<f64> {
         let mut of_coordinate: Vec<Option<f64>> = vec![None; self.coordinates.len()];
         let mut lengths = Lengths::new();
-        for (index, &factor) in of_component.iter().enumerate() {
-            let component = &self.components[index];
-            let Law::Translate(_) = component.law else { continue };
+        for (index, growth) in of_component.iter().enumerate() {
+            let component = &mut self.components[index];
+            let Law::Translate(along) = &mut component.law else { continue };
+            let factor = growth.length(along.axis);
+            along.axis = growth.direction(along.axis);
             let Some(&distance) = component.inputs.first() else { continue };
             let mut source = distance;
             let mut reader = Reader::Translate(index);
@@ -302,8 +335,8 @@ impl Model {
     }
 }
 
-fn grow(frame: &mut Affine, factor: f64) {
-    frame.translation = frame.translation * factor;
+fn grow(frame: &mut Affine, by: Growth) {
+    frame.translation = by.point(frame.translation);
 }
 
 /// One output of a function, `factor` times as large.
@@ -334,14 +367,15 @@ fn grow_output(law: &mut Law, output: u32, factor: f64) {
 
 fn grow_condition(
     condition: &mut Condition,
-    of: &impl Fn(Option<SegmentId>) -> f64,
+    of: &impl Fn(Option<SegmentId>) -> Growth,
     of_coordinate: &[f64],
 ) {
     match condition {
-        Condition::Points { at } => at.iter_mut().for_each(|(id, p)| *p = *p * of(*id)),
+        Condition::Points { at } => at.iter_mut().for_each(|(id, p)| *p = of(*id).point(*p)),
         Condition::Frames { at } => at.iter_mut().for_each(|(id, frame)| grow(frame, of(*id))),
         Condition::Distance { at, distance } => {
-            at.iter_mut().for_each(|(id, p)| *p = *p * of(*id));
+            at.iter_mut().for_each(|(id, p)| *p = of(*id).point(*p));
+            let of = |id| of(id).mean();
             // A ligament between two bones is scaled with both, one to the world with its bone.
             *distance *= match at.each_ref().map(|(id, _)| *id) {
                 [Some(a), Some(b)] => (of(Some(a)) * of(Some(b))).sqrt(),

@@ -118,15 +118,17 @@ pub fn gather(
                 return Err(failed(path, error));
             }
             (Content::Recording(recording), Some(model)) => {
-                tracked(path, model, &meant, &recording, wanted, &mut |done, all| {
+                tracked(model, &meant, &recording, &wanted.request, &mut |done, all| {
                     progress(index, done, all);
-                })?
+                })
+                .map_err(|error| failed(path, error))?
             }
             (Content::Trial(trial), Some(model)) => {
                 let recording = &trial.recording;
-                tracked(path, model, &meant, recording, wanted, &mut |done, all| {
+                tracked(model, &meant, recording, &wanted.request, &mut |done, all| {
                     progress(index, done, all);
-                })?
+                })
+                .map_err(|error| failed(path, error))?
             }
             (other, _) => {
                 let message = format!("the file holds {}, no trial", other.kind().name());
@@ -192,24 +194,22 @@ fn of_motion(model: &Model, meant: &[CoordinateId], motion: &Motion) -> Vec<f64>
 }
 
 /// Coordinates, how many frames were tracked badly, and the RMS of the markers of the others.
-type Rows = (Vec<f64>, usize, Option<f64>);
+pub(super) type Rows = (Vec<f64>, usize, Option<f64>);
 
-fn tracked(
-    path: &Path,
+/// The coordinates that are meant in the frames of a recording that are tracked well.
+pub(super) fn tracked(
     model: &Model,
     meant: &[CoordinateId],
     recording: &Recording,
-    wanted: &Coupled,
+    request: &Request,
     progress: &mut (dyn FnMut(usize, usize) + Send),
-) -> Result<Rows, OpenError> {
-    let tracking = tracking::track(model, recording, &wanted.request, progress);
-    let tracking = tracking.map_err(|error| failed(path, error))?;
+) -> Result<Rows, Error> {
+    let tracking = tracking::track(model, recording, request, progress)?;
     let errors = frame_errors(&tracking);
     let mut rising: Vec<f64> = errors.iter().flatten().copied().collect();
     rising.sort_by(f64::total_cmp);
     let Some(middle) = rising.get(rising.len() / 2) else {
-        let message = "no frame could be tracked";
-        return Err(failed(path, Error::new("learn/not-tracked", message)));
+        return Err(Error::new("learn/not-tracked", "no frame could be tracked"));
     };
     let most = FAR * middle.max(1e-6);
     let (mut rows, mut bad, mut sum, mut good) = (vec![], 0, 0.0, 0usize);

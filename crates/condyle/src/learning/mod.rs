@@ -10,6 +10,7 @@
 //! | `query` | what a limit says of rotations |
 //! | `engine` | a learned limit in the numbers of game and robot engines |
 //! | `mobility` | a learned limit in numbers, and two compared |
+//! | [`study`] | the study of Pronost et al. 2010 with virtual people |
 
 pub mod arms;
 mod coupling;
@@ -18,6 +19,7 @@ mod given;
 mod limit;
 mod mobility;
 mod query;
+pub mod study;
 mod take;
 
 pub use condyle_learn::limits::engine::{Aim, ConeTwist, Law, Loss, Lost, ReachCone};

@@ -224,16 +224,17 @@ fn cameras(model: &Model, sheet: &Sheet, placed: &[Placed], layout: &Layout) -> 
     };
     let all = |p: &Placed| if sheet.focus.names.is_empty() { p.looked } else { p.whole };
     let whole = placed.iter().map(|p| moved(&all(p), away(p))).reduce(Bounds::with);
+    // What is looked at moves in the figure, while the figure stays where it is in all cells.
+    let looked = placed.iter().map(|p| moved(&p.looked, away(p))).reduce(Bounds::with);
     let mut cameras = vec![];
     for view in &sheet.views {
         let camera = view.camera(model);
-        let Some(whole) = whole else { continue };
+        let (Some(whole), Some(looked)) = (whole, looked) else { continue };
         let framed = camera.framing(&whole, aspect, MARGIN);
-        let tight = placed.iter().map(|p| camera.framing(&p.looked, aspect, 2.0 * MARGIN).height);
         let height = match sheet.focus.zoom {
             Some(zoom) => framed.height / zoom,
             None if sheet.focus.names.is_empty() => framed.height,
-            None => tight.fold(0.0, f64::max),
+            None => camera.framing(&looked, aspect, 2.0 * MARGIN).height,
         };
         for placed in placed {
             let centre = match sheet.focus.names.is_empty() {
@@ -242,7 +243,7 @@ fn cameras(model: &Model, sheet: &Sheet, placed: &[Placed], layout: &Layout) -> 
                 false => placed
                     .joints
                     .filter(|_| sheet.focus.zoom.is_some())
-                    .unwrap_or_else(|| placed.looked.centre().into()),
+                    .unwrap_or_else(|| Vec3::from(looked.centre()) + away(placed)),
             };
             cameras.push(Camera { centre: centre.to_array(), height, ..camera });
         }

@@ -5,11 +5,12 @@ use crate::failure::{Failure, warned};
 use crate::output;
 use crate::screen::say;
 use clap::Args;
+use condyle::Error;
 use condyle::formats::document;
-use condyle::learn::calibration::FreeJoint;
+use condyle::learn::calibration::{FreeJoint, Functional};
 use condyle::math::EulerOrder;
 use condyle::open;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Make a model of two segments with a free joint between them from a standing trial: with it `learn coupling` tracks.
 ///
@@ -42,6 +43,16 @@ pub(super) struct Joint {
     /// The joint is on the left side.
     #[arg(long)]
     left: bool,
+    /// The axes of both segments: a document of `kind = "recipe"` whose reference is the parent, or a shipped one such as knee-isb. The angles
+    /// of the standing person are not 0 then.
+    #[arg(long, value_name = "R.toml")]
+    recipe: Option<PathBuf>,
+    /// A trial in which the joint turns about all axes: its centre comes from there (hip, shoulder).
+    #[arg(long, value_name = "TRIAL", conflicts_with = "functional_axis")]
+    functional_centre: Option<PathBuf>,
+    /// A trial in which the joint bends: its axis comes from there (knee, elbow), and the centre is the axis' point between the ends.
+    #[arg(long, value_name = "TRIAL")]
+    functional_axis: Option<PathBuf>,
     /// The order of the rotations; zxy is that of Grood & Suntay.
     #[arg(long, default_value = "zxy")]
     order: EulerOrder,
@@ -77,9 +88,22 @@ impl Joint {
             let message = format!("{path}: the model is written as a document: end it in .toml");
             return Err(Failure::new(message));
         }
-        output::check_distinct(&[self.trial.as_path()], &[self.output.as_path()])?;
+        let inputs: Vec<&Path> = [&self.trial]
+            .into_iter()
+            .chain(
+                [&self.recipe, &self.functional_centre, &self.functional_axis]
+                    .into_iter()
+                    .flatten(),
+            )
+            .map(PathBuf::as_path)
+            .collect();
+        output::check_distinct(&inputs, &[self.output.as_path()])?;
         let read = open::recording_with(&self.trial, zeros(self.zeros))?;
         let standing = warned(&self.trial, read);
+        let axes = match &self.recipe {
+            Some(path) => Some(warned(path, open::recipe(path)?)),
+            None => None,
+        };
         let Ok(angles) = <[String; 3]>::try_from(self.angles.clone()) else {
             return Err(Failure::new("--angles needs three names"));
         };
@@ -92,10 +116,42 @@ impl Joint {
             left: self.left,
             order: self.order,
             angles,
+            axes,
         };
-        let model = joint
-            .model(&standing)
-            .map_err(|error| Failure::new(format!("{}: {error}", self.trial.display())))?;
+        let of = |path: &Path| {
+            let path = path.to_owned();
+            move |error: Error| Failure::new(format!("{}: {error}", path.display()))
+        };
+        let functional = match (&self.functional_centre, &self.functional_axis) {
+            (Some(path), _) => {
+                let motion = warned(path, open::recording_with(path, zeros(self.zeros))?);
+                let found = Functional::centre(&standing, &motion, &joint.markers);
+                Some((path, found.map_err(of(path))?))
+            }
+            (None, Some(path)) => {
+                let motion = warned(path, open::recording_with(path, zeros(self.zeros))?);
+                let found = Functional::axis(&standing, &motion, &joint.markers);
+                Some((path, found.map_err(of(path))?))
+            }
+            (None, None) => None,
+        };
+        let landmarks = joint.frames(&standing, None).map_err(of(&self.trial))?;
+        let frames = match &functional {
+            None => landmarks,
+            Some((path, found)) => {
+                let frames = joint.frames(&standing, Some(found)).map_err(of(&self.trial))?;
+                let away = (frames.child.translation - landmarks.child.translation).norm();
+                let message = format!(
+                    "{}: {}; {:.1} mm from the middle of the ends",
+                    path.display(),
+                    found.describe(),
+                    1e3 * away
+                );
+                say(&message);
+                frames
+            }
+        };
+        let model = joint.model_at(&standing, &frames).map_err(of(&self.trial))?;
         let unrest = joint.unrest(&standing);
         if unrest > STILL {
             let message = format!(

@@ -1,29 +1,35 @@
-//! A model file of OpenSim scaled by a setup of its scale tool, which comes back as itself.
+//! A model scaled by a setup of OpenSim's scale tool: an .osim comes back as itself, another model as a document.
 
 use super::Scale;
 use crate::commands::{Outcome, zeros};
 use crate::failure::{Failure, warn_about, warned};
 use crate::output;
+use crate::screen::say;
+use condyle::formats::document;
+use condyle::formats::opensim::scale::{Report, ScaledBody};
 use condyle::formats::opensim::scale_setup::{MarkerSource, ScaleSetup};
 use condyle::open;
-use condyle::subject::{self, Asked, Placed, ScaleRules, Subject};
+use condyle::subject::{self, Asked, Placed, ScaleRules, Subject, SubjectModel};
 use condyle::{Recording, Table};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 
 pub(super) fn run(command: &Scale, setup_path: &Path) -> Result<Outcome, Failure> {
     let to_screen = command.output == Path::new("-");
-    if !to_screen && open::ending(&command.output) != "osim" {
+    let own_file = open::ending(&command.model) == "osim";
+    let ending = if own_file { "osim" } else { "toml" };
+    if !to_screen && open::ending(&command.output) != ending {
         let path = command.output.display();
-        return Err(Failure::new(format!(
-            "{path}: with a setup of OpenSim the scaled model is the model's own file: end it in .osim"
-        )));
+        let why = match own_file {
+            true => "with a setup the scaled .osim is the model's own file",
+            false => "a scaled model that is no .osim is written as a document",
+        };
+        return Err(Failure::new(format!("{path}: {why}: end it in .{ending}")));
     }
-    if open::ending(&command.model) != "osim" {
-        let path = command.model.display();
-        return Err(Failure::new(format!(
-            "{path}: a setup of OpenSim scales an .osim: give one, or omit --setup"
-        )));
+    if !own_file && (command.mass.is_some() || command.preserve_mass || command.as_opensim) {
+        return Err(Failure::new(
+            "--mass, --preserve-mass and --as-opensim are for an .osim: other models have no masses",
+        ));
     }
     if to_screen && command.json {
         return Err(Failure::new("--json and -o - both want standard output: give one of them"));
@@ -54,13 +60,6 @@ pub(super) fn run(command: &Scale, setup_path: &Path) -> Result<Outcome, Failure
     let mut outputs: Vec<&Path> = vec![&command.output];
     outputs.extend(command.report.as_deref());
     output::check_distinct(&inputs, &outputs)?;
-    let mut text = warned(&command.model, open::osim_text(&command.model)?);
-    if let Some(set) = &set {
-        text = warned(set, open::osim_with_markers(&text, set)?);
-    } else if let MarkerSource::Inline(set) = &setup.markers {
-        let read = condyle::formats::opensim::scale::with_marker_set(&text, set.as_bytes());
-        text = warned(setup_path, read?);
-    }
     let recording = |path: &Option<PathBuf>| -> Result<Option<Recording>, Failure> {
         let Some(path) = path else { return Ok(None) };
         Ok(Some(warned(path, open::recording_with(path, zeros(command.zeros))?)))
@@ -85,8 +84,25 @@ pub(super) fn run(command: &Scale, setup_path: &Path) -> Result<Outcome, Failure
         stands: stands_in,
         coordinates: table.as_ref(),
     };
-    let done = subject::scale(&text, &asked)
-        .map_err(|error| Failure::new(format!("{}: {error}", command.model.display())))?;
+    let done = if own_file {
+        let mut text = warned(&command.model, open::osim_text(&command.model)?);
+        if let Some(set) = &set {
+            text = warned(set, open::osim_with_markers(&text, set)?);
+        } else if let MarkerSource::Inline(set) = &setup.markers {
+            let read = condyle::formats::opensim::scale::with_marker_set(&text, set.as_bytes());
+            text = warned(setup_path, read?);
+        }
+        subject::scale(&text, &asked)
+    } else {
+        if !matches!(setup.markers, MarkerSource::Model) {
+            let message = "the setup's markers are not taken: those of the model are used";
+            say(&format!("warning: {}: {message}", setup_path.display()));
+        }
+        let model = warned(&command.model, open::model(&command.model)?);
+        subject::scale_model(&model, &asked).map(in_text)
+    };
+    let done =
+        done.map_err(|error| Failure::new(format!("{}: {error}", command.model.display())))?;
     warn_about(&command.model, &done.warnings);
     output::write(&command.output, done.text.as_bytes())?;
     let report = report(command, setup_path, &done);
@@ -104,6 +120,23 @@ pub(super) fn run(command: &Scale, setup_path: &Path) -> Result<Outcome, Failure
     }
     let solved = done.placed.as_ref().is_none_or(|placed| placed.status.is_solved());
     Ok(if solved { Outcome::Done } else { Outcome::DoesNotHold })
+}
+
+/// A model that is no file of OpenSim, as its document.
+fn in_text(done: SubjectModel) -> Subject {
+    let bodies = done.factors.iter().map(|(name, &factors)| ScaledBody {
+        name: name.clone(),
+        factors,
+        mass: None,
+    });
+    Subject {
+        text: document::write(&done.model),
+        report: Report { bodies: bodies.collect(), ..Report::default() },
+        factors: done.factors,
+        measurements: done.measurements,
+        placed: done.placed,
+        warnings: done.warnings,
+    }
 }
 
 fn report(command: &Scale, setup: &Path, done: &Subject) -> Value {
@@ -220,7 +253,9 @@ fn said(done: &Subject) -> String {
     });
     let mut text = output::columns(&rows.collect::<Vec<_>>());
     let [before, after] = report.mass();
-    text.push_str(&format!("mass: {before:.2} kg before, {after:.2} kg after\n"));
+    if before > 0.0 {
+        text.push_str(&format!("mass: {before:.2} kg before, {after:.2} kg after\n"));
+    }
     let mut list = |title: &str, names: Vec<String>| {
         if !names.is_empty() {
             let few = output::few(names.into_iter());

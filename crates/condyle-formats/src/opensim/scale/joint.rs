@@ -9,15 +9,19 @@ use crate::opensim::model::{Base, triple};
 use crate::xml::Element;
 use crate::xml::edit::escaped;
 use condyle_diagnostics::{Diagnostic, Error};
-use condyle_math::Vec3;
+use condyle_math::{EulerOrder, Growth, Mat3, Vec3};
 
 /// The first version whose joints state their ends as frames.
 const FRAMES_IN_JOINTS: u32 = 30505;
 
 impl<'d> Scaling<'d, '_, '_> {
     pub(super) fn joint(&mut self, joint: Element<'d>) -> Result<(), Error> {
-        let Some([parent, child]) = self.ends(joint)? else { return Ok(()) };
+        let Some(([parent, child], turn)) = self.ends(joint)? else { return Ok(()) };
         let (parent, child) = (self.factor(parent), self.factor(child));
+        // OpenSim takes the parent's axes for those of the joint, however its frame is turned.
+        let turn = if self.rules.as_opensim { Mat3::IDENTITY } else { turn };
+        let inside = Growth::along_axes(parent.to_array()).within(turn);
+        let radii = Vec3::from([Vec3::X, Vec3::Y, Vec3::Z].map(|axis| inside.length(axis)));
         let new = Frames::socket(joint, "parent_frame").is_some();
         if !new || self.version < FRAMES_IN_JOINTS {
             let mut ends = self.triple(joint, "location_in_parent", parent)?;
@@ -29,11 +33,11 @@ impl<'d> Scaling<'d, '_, '_> {
         }
         match joint.name() {
             "EllipsoidJoint" => {
-                self.triple(joint, "radii_x_y_z", parent)?;
+                self.triple(joint, "radii_x_y_z", radii)?;
                 self.report.count("ellipsoids of joints");
             }
             "ScapulothoracicJoint" => {
-                self.triple(joint, "thoracic_ellipsoid_radii_x_y_z", parent)?;
+                self.triple(joint, "thoracic_ellipsoid_radii_x_y_z", radii)?;
                 if let Some([x, y]) = joint.child_numbers::<2>("scapula_winging_axis_origin")?
                     && let Some(origin) = joint.child("scapula_winging_axis_origin")
                 {
@@ -45,11 +49,11 @@ impl<'d> Scaling<'d, '_, '_> {
                 self.number(joint, "length", child.y)?;
                 self.report.count("lengths of bent columns");
             }
-            "CustomJoint" => self.custom(joint, parent)?,
-            "SliderJoint" => self.sliding(joint, parent, &[(0, Vec3::X)]),
-            "PlanarJoint" => self.sliding(joint, parent, &[(1, Vec3::X), (2, Vec3::Y)]),
+            "CustomJoint" => self.custom(joint, &inside)?,
+            "SliderJoint" => self.sliding(joint, &inside, &[(0, Vec3::X)]),
+            "PlanarJoint" => self.sliding(joint, &inside, &[(1, Vec3::X), (2, Vec3::Y)]),
             "FreeJoint" => {
-                self.sliding(joint, parent, &[(3, Vec3::X), (4, Vec3::Y), (5, Vec3::Z)]);
+                self.sliding(joint, &inside, &[(3, Vec3::X), (4, Vec3::Y), (5, Vec3::Z)]);
             }
             "PinJoint" | "UniversalJoint" | "BallJoint" | "GimbalJoint" | "WeldJoint" => {}
             _ => self.report.leave(name_of(joint), "its kind is not known"),
@@ -57,24 +61,28 @@ impl<'d> Scaling<'d, '_, '_> {
         self.coordinates(joint)
     }
 
-    /// What a joint connects; none of one that stands where OpenSim looks for no joint.
-    fn ends(&self, joint: Element<'d>) -> Result<Option<[Base; 2]>, Error> {
+    /// What a joint connects, and how its frame is turned in the parent; none of one that stands where OpenSim looks for no joint.
+    fn ends(&self, joint: Element<'d>) -> Result<Option<([Base; 2], Mat3)>, Error> {
         let Ok(parent) = Frames::reference(joint, &["parent_frame", "parent_body"]) else {
             return Ok(None);
         };
-        let parent = self.frames.resolve(joint, parent)?.0;
+        let (parent, frame) = self.frames.resolve(joint, parent)?;
+        // Old files state the turn in the joint.
+        let own = joint.child("orientation_in_parent").is_some() && self.version < FRAMES_IN_JOINTS;
+        let own = if own { triple(joint, "orientation_in_parent")? } else { Vec3::ZERO };
+        let turn = frame.linear * EulerOrder::XYZ.to_mat3(own.to_array());
         let holder = joint.parent().filter(|holder| holder.is("Joint"));
         if let Some(body) = holder.and_then(|holder| holder.parent())
             && let Some((child, _)) = self.frames.at(body)?
         {
-            return Ok(Some([parent, child]));
+            return Ok(Some(([parent, child], turn)));
         }
         let child = self.frames.of_part(joint, &["child_frame", "child_body"])?.0;
-        Ok(Some([parent, child]))
+        Ok(Some(([parent, child], turn)))
     }
 
     /// A custom joint: the functions of its translations.
-    fn custom(&mut self, joint: Element<'d>, parent: Vec3) -> Result<(), Error> {
+    fn custom(&mut self, joint: Element<'d>, inside: &Growth) -> Result<(), Error> {
         for (place, element) in axes(joint) {
             let rotation = element.child_bool("is_rotation")?.unwrap_or(place < 3);
             if rotation {
@@ -92,7 +100,7 @@ impl<'d> Scaling<'d, '_, '_> {
                 None => {
                     // An empty function is the coordinate itself.
                     if element.child("function").is_some() {
-                        self.slides(driver, axis, parent);
+                        self.slides(driver, axis, inside);
                     }
                     continue;
                 }
@@ -100,11 +108,11 @@ impl<'d> Scaling<'d, '_, '_> {
                     let list = linear.child("coefficients");
                     let list = list.map(Element::f64s).transpose()?.unwrap_or_default();
                     if list == [1.0, 0.0] && !driver.is_empty() {
-                        self.slides(driver, axis, parent);
+                        self.slides(driver, axis, inside);
                         continue;
                     }
                     if list == [-1.0, 0.0] {
-                        self.translations.insert(driver.to_owned(), reach(axis, parent));
+                        self.translations.insert(driver.to_owned(), reach(axis, inside));
                     }
                 }
                 Some(_) => {}
@@ -112,12 +120,12 @@ impl<'d> Scaling<'d, '_, '_> {
             let Some(function) = function else { continue };
             self.report.count("translations of joints");
             if self.rules.as_opensim {
-                let [a, f] = [axis.to_array(), parent.to_array()];
-                let factor = a.iter().zip(f).map(|(a, f)| a.abs() * f).sum();
+                let each = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| inside.length(axis));
+                let factor = axis.to_array().iter().zip(each).map(|(a, f)| a.abs() * f).sum();
                 self.multiply(function, factor)?;
                 continue;
             }
-            let along = axis.times(parent);
+            let along = inside.point(axis);
             if along.cross(axis).norm() > 1e-12 * along.norm() * axis.norm()
                 && let Some(stated) = element.child("axis")
             {
@@ -125,7 +133,7 @@ impl<'d> Scaling<'d, '_, '_> {
                 self.edits.set_text(stated, &written(&turned.to_array()));
                 self.report.beyond.push(("turned by unequal factors", axis_of(joint, element)));
             }
-            self.multiply(function, reach(axis, parent))?;
+            self.multiply(function, reach(axis, inside))?;
         }
         Ok(())
     }
@@ -154,10 +162,10 @@ impl<'d> Scaling<'d, '_, '_> {
     }
 
     /// A coordinate that is a length along an axis.
-    fn slides(&mut self, name: &str, axis: Vec3, parent: Vec3) {
+    fn slides(&mut self, name: &str, axis: Vec3, inside: &Growth) {
         if !name.is_empty() {
-            let factor = reach(axis, parent);
-            if parent != Vec3::new(parent.x, parent.x, parent.x) {
+            let factor = reach(axis, inside);
+            if !inside.is_even() {
                 self.unequal.insert(name.to_owned());
             }
             self.lengths.insert(name.to_owned(), factor);
@@ -166,11 +174,11 @@ impl<'d> Scaling<'d, '_, '_> {
     }
 
     /// Coordinates of a joint that are lengths, by their positions.
-    fn sliding(&mut self, joint: Element<'d>, parent: Vec3, which: &[(usize, Vec3)]) {
+    fn sliding(&mut self, joint: Element<'d>, inside: &Growth, which: &[(usize, Vec3)]) {
         let all = coordinates(joint);
         for &(index, axis) in which {
             let name = all.get(index).and_then(|e| e.attribute("name")).unwrap_or_default();
-            self.slides(name, axis, parent);
+            self.slides(name, axis, inside);
         }
     }
 

@@ -42,7 +42,7 @@ use crate::Include;
 use crate::xml::edit::Edits;
 use crate::xml::{Element, XmlDocument, text_of};
 use condyle_diagnostics::{Diagnostic, Error, Read, Warnings, nearest};
-use condyle_math::Vec3;
+use condyle_math::{Growth, Vec3};
 use condyle_model::{Model, ModelBuilder};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -296,12 +296,9 @@ impl<'d, 't, 'r> Scaling<'d, 't, 'r> {
     }
 }
 
-/// By how much a length along an axis grows.
-fn reach(axis: Vec3, factors: Vec3) -> f64 {
-    if factors == Vec3::new(factors.x, factors.x, factors.x) {
-        return factors.x;
-    }
-    let reach = axis.times(factors).norm() / axis.norm();
+/// By how much a length along an axis of any length grows.
+fn reach(axis: Vec3, by: &Growth) -> f64 {
+    let reach = by.length(axis) / if by.is_even() { 1.0 } else { axis.norm() };
     if reach.is_finite() { reach } else { 1.0 }
 }
 

@@ -7,7 +7,7 @@ use crate::opensim::model::function::is_function;
 use crate::opensim::model::triple;
 use crate::xml::Element;
 use condyle_diagnostics::Error;
-use condyle_math::{EulerOrder, Mat3, Vec3};
+use condyle_math::{EulerOrder, Growth, Mat3, Vec3};
 
 /// Forces and controls that hold no length.
 const NO_LENGTHS: [&str; 14] = [
@@ -120,7 +120,8 @@ impl<'d> Scaling<'d, '_, '_> {
         self.triple(surface, "translation", factors)?;
         self.report.count("surfaces that muscles wrap");
         let turn = EulerOrder::XYZ.to_mat3(triple(surface, "xyz_body_rotation")?.to_array());
-        let local = [turn.x, turn.y, turn.z].map(|axis| reach(axis, factors));
+        let by = Growth::along_axes(factors.to_array());
+        let local = [turn.x, turn.y, turn.z].map(|axis| reach(axis, &by));
         let across = 0.5 * (local[0] + local[1]);
         match surface.name() {
             "WrapCylinder" => {

@@ -65,8 +65,12 @@ impl Report {
             text.push_str(&format!("| {} | {x:.4} | {y:.4} | {z:.4} | {mass} |\n", body.name));
         }
         let [before, after] = self.mass();
-        text.push_str(&format!("| all | | | | {before:.4} | {after:.4} |\n\n"));
-        text.push_str("Multiplied by the factors of their body:\n\n");
+        if before > 0.0 {
+            text.push_str(&format!("| all | | | | {before:.4} | {after:.4} |\n"));
+        }
+        if !self.scaled.is_empty() {
+            text.push_str("\nMultiplied by the factors of their body:\n\n");
+        }
         for (kind, count) in &self.scaled {
             text.push_str(&format!("- {count} {kind}\n"));
         }

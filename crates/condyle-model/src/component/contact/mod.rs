@@ -40,7 +40,7 @@ pub use pairs::ContactPair;
 use super::{Contract, Fault, Geometry, Kind, Mirrored, Port, PortType, Reflection};
 use closest::distance;
 use condyle_diagnostics::Severity;
-use condyle_math::{Affine, Lane, Mat3, Scalar, Vec3};
+use condyle_math::{Affine, Growth, Lane, Mat3, Scalar, Vec3};
 use pairs::Places;
 use quartic::{Quartic, Turn};
 
@@ -93,22 +93,24 @@ impl Contract for Contact {
         vec![]
     }
 
-    fn grow(&mut self, _: f64, segments: &[f64]) {
+    fn grow(&mut self, _: &Growth, segments: &[Growth]) {
         let &[own, below, ..] = segments else { return };
-        self.most_gap = self.most_gap.map(|gap| gap * below);
+        self.most_gap = self.most_gap.map(|gap| gap * below.mean());
         // Rebuilt only where it changes, so that factor 1 keeps every bit.
-        if (own, below) == (1.0, 1.0) {
+        if own.is_none() && below.is_none() {
             return;
         }
         let mut place = self.law.ellipsoid_in_surface();
-        place.translation = place.translation * below;
+        place.translation = below.point(place.translation);
+        let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| below.length(place.linear * axis));
+        let radii = self.law.radii().times(Vec3::from(axes));
         let pair = |p: &ContactPair| ContactPair {
-            first: p.first * own,
-            second: p.second * own,
+            first: own.point(p.first),
+            second: own.point(p.second),
             at: p.at,
         };
         let pairs = self.law.pairs().iter().map(pair).collect();
-        if let Ok(law) = Gliding::new(place, self.law.radii() * below, self.law.axis(), pairs) {
+        if let Ok(law) = Gliding::new(place, radii, self.law.axis(), pairs) {
             self.law = law;
         }
     }

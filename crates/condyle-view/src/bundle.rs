@@ -1,0 +1,51 @@
+//! The built page, which is part of the program.
+
+/// A file of the page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Asset {
+    /// Its name in the folder `assets/` beside the page.
+    pub name: &'static str,
+    /// Its media type, as a server states it.
+    pub media_type: &'static str,
+    /// What it holds.
+    pub bytes: &'static [u8],
+}
+
+/// The page itself, which names its files as `assets/NAME`.
+pub const PAGE: &str = include_str!("../page/dist/index.html");
+
+/// The name of the evaluator, WebAssembly packed by gzip; the page unpacks it.
+pub(crate) const CORE: &str = "core.wasm.gz";
+/// The name of the program of the page.
+pub(crate) const PROGRAM: &str = "page.js";
+
+const ASSETS: [Asset; 2] = [
+    Asset {
+        name: PROGRAM,
+        media_type: "text/javascript; charset=utf-8",
+        bytes: include_bytes!("../page/dist/assets/page.js"),
+    },
+    Asset {
+        name: CORE,
+        // Not `application/wasm` with an encoding: the page unpacks it wherever it comes from.
+        media_type: "application/gzip",
+        bytes: include_bytes!("../page/dist/assets/core.wasm.gz"),
+    },
+];
+
+/// All files of the page beside [`PAGE`].
+#[must_use]
+pub fn assets() -> &'static [Asset] {
+    &ASSETS
+}
+
+/// A file of the page by its exact name.
+///
+/// ```
+/// assert!(condyle_view::asset("page.js").is_some());
+/// assert!(condyle_view::asset("../session.json").is_none());
+/// ```
+#[must_use]
+pub fn asset(name: &str) -> Option<&'static Asset> {
+    ASSETS.iter().find(|asset| asset.name == name)
+}
