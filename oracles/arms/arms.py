@@ -30,7 +30,7 @@ PEOPLE = [
     ("opencap4", "opencap4/static1.trc", ["opencap4/walking1.trc", "opencap4/squats1.trc"],
      ["--parent", "thigh_r=r_knee,r_thigh1,r_thigh2,r_thigh3,r_thigh4,r_thigh5",
       "--child", "shank_r=r_shank_antsup,r_sh2,r_sh3,r_sh4,r_ankle",
-      "--origin", "R_HJC", "--medial", "r_mknee", "--lateral", "r_knee"], "other trials"),
+      "--origin", "R_HJC", "--medial", "r_mknee", "--lateral", "r_knee"], "other motions"),
 ]
 POSES = 100
 KEPT = 10

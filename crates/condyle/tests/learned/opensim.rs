@@ -76,7 +76,7 @@ fn marker_errors_on_trials_left_out_are_those_of_opensim() {
         assert!(!all.is_empty());
         for one in &all {
             let trial = &persons[0].trials[one.trial].name;
-            for arm in Arm::ALL {
+            for arm in Arm::COMPARED {
                 let theirs = &answer["errors"][trial][arm.name()];
                 let ours = one.of(arm).unwrap();
                 assert_eq!(ours.frames() as u64, theirs["frames"].as_u64().unwrap(), "{trial} {arm:?}");
@@ -97,7 +97,7 @@ const TOLERANCE: f64 = 5e-3;
 /// Where OpenSim has the shank in the poses that are kept.
 fn shanks(leg: &Leg, one: &Compared, answer: &Value) {
     let centre = &one.parts[0].centre;
-    for arm in Arm::ALL {
+    for arm in Arm::COMPARED {
         let model = leg.arm(arm, Some(centre)).unwrap();
         let answer_of = &answer["poses"][arm.name()];
         // What the script found over its 100 poses.

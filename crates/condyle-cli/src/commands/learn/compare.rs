@@ -281,7 +281,7 @@ impl Compare {
             for part in &one.parts {
                 number += 1;
                 let mut names = vec![];
-                for arm in Arm::ALL {
+                for arm in Arm::COMPARED {
                     let mut model = person.leg.arm(arm, Some(&part.centre))?;
                     model.set_name(&format!("{}_{}", person.leg.model().name(), arm.name()));
                     let stiff = !arm.is_learned();

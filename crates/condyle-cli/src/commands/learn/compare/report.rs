@@ -12,7 +12,8 @@ pub(super) fn json(
 ) -> Value {
     let all = groups(persons, compared);
     let gained = gains(&all);
-    let arms = Arm::ALL.map(|arm| json!({ "arm": arm.name(), "coordinates": arm.coordinates() }));
+    let arms =
+        Arm::COMPARED.map(|arm| json!({ "arm": arm.name(), "coordinates": arm.coordinates() }));
     let person = |person: &Person| {
         json!({
             "name": person.name,
@@ -44,7 +45,7 @@ pub(super) fn json(
             let times = trial.map(|t| &t.recording.times);
             let time = |frame: usize| times.and_then(|times| times.get(frame)).copied();
             let files = models.get(at).and_then(|parts| parts.get(part)).map(|names| {
-                let named = Arm::ALL.iter().zip(names);
+                let named = Arm::COMPARED.iter().zip(names);
                 named.map(|(arm, file)| (arm.name().to_owned(), json!(file))).collect::<Map<_, _>>()
             });
             json!({
@@ -53,6 +54,7 @@ pub(super) fn json(
                 "learned_from_frames": own.centre.frames,
                 "mean_m": own.centre.mean,
                 "c4_m": own.centre.at_zero(),
+                "best_m": own.centre.best,
                 "models": files,
             })
         });
