@@ -37,7 +37,7 @@ const UPWARD: [[f64; 2]; 7] = [
 ];
 
 /// The distance from hip to knee of that model while the knee is straight, in metres: its y at 0.
-pub const PLANAR_LENGTH: f64 = 0.395_820_698_6;
+pub const PLANAR_LENGTH: f64 = 0.395_820_696_4;
 
 /// The places forward and upward as functions of the angle about z, times a factor and moved, so that at the angle `from`, both
 /// are `at`. A `sense` of -1 takes angles with flexion positive.
