@@ -7,8 +7,10 @@ pub enum Arm {
     Hinge,
     /// One angle; the centre follows it by splines in a plane (Yamaguchi & Zajac 1989): 3DOF there.
     Planar,
-    /// Three angles about the best constant centre.
+    /// Three angles about the mean centre: the law without slopes.
     Fixed,
+    /// Three angles about the constant centre that leaves the least at the markers of the frames that laws are learned from.
+    FixedBest,
     /// Three angles about the constant of the law.
     FixedC4,
     /// Three angles about the centre of the law: 3⁺DOF there.
@@ -18,9 +20,20 @@ pub enum Arm {
 }
 
 impl Arm {
-    /// All of them, from the stiffest to the freest.
+    /// Those that a leg and a law are enough for, from the stiffest to the freest; [`Self::FixedBest`] needs recordings as well.
     pub const ALL: [Self; 6] =
         [Self::Hinge, Self::Planar, Self::Fixed, Self::FixedC4, Self::Learned, Self::Free];
+
+    /// All of them.
+    pub const COMPARED: [Self; 7] = [
+        Self::Hinge,
+        Self::Planar,
+        Self::Fixed,
+        Self::FixedC4,
+        Self::FixedBest,
+        Self::Learned,
+        Self::Free,
+    ];
 
     /// The word for it in tables and files.
     ///
@@ -36,6 +49,7 @@ impl Arm {
             Self::Planar => "planar",
             Self::Fixed => "fixed",
             Self::FixedC4 => "fixed-c4",
+            Self::FixedBest => "fixed-best",
             Self::Learned => "learned",
             Self::Free => "free",
         }
@@ -44,7 +58,7 @@ impl Arm {
     /// The arm of a word.
     #[must_use]
     pub fn named(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|arm| arm.name() == word)
+        Self::COMPARED.into_iter().find(|arm| arm.name() == word)
     }
 
     /// How many coordinates of the joint are free.
@@ -52,7 +66,7 @@ impl Arm {
     pub fn coordinates(self) -> usize {
         match self {
             Self::Hinge | Self::Planar => 1,
-            Self::Fixed | Self::FixedC4 | Self::Learned => 3,
+            Self::Fixed | Self::FixedC4 | Self::FixedBest | Self::Learned => 3,
             Self::Free => 6,
         }
     }
@@ -60,6 +74,6 @@ impl Arm {
     /// Whether it takes something from recordings.
     #[must_use]
     pub fn is_learned(self) -> bool {
-        matches!(self, Self::Fixed | Self::FixedC4 | Self::Learned)
+        matches!(self, Self::Fixed | Self::FixedC4 | Self::FixedBest | Self::Learned)
     }
 }

@@ -15,6 +15,8 @@ pub struct Centre {
     pub laws: [LawFunction; 3],
     /// The mean place over the frames.
     pub mean: [f64; 3],
+    /// The constant place that leaves the least at the markers of these frames, where that was asked.
+    pub best: Option<[f64; 3]>,
     /// Where the angles were.
     pub region: Region,
     /// How many frames it was learned from.
@@ -95,7 +97,13 @@ impl Centre {
         let functions = <[LawFunction; 3]>::try_from(functions).map_err(|given| {
             Error::new("arms/columns", format!("{} laws are no three places", given.len()))
         })?;
-        Ok(Self { laws: functions, mean, region: laws.region.clone(), frames: laws.frames() })
+        Ok(Self {
+            laws: functions,
+            mean,
+            best: None,
+            region: laws.region.clone(),
+            frames: laws.frames(),
+        })
     }
 
     /// The places where all angles are 0: c₄ of the paper.
@@ -111,6 +119,7 @@ impl Centre {
         Self {
             laws: [axis(0), axis(1), axis(2)],
             mean: [0, 1, 2].map(|k| self.mean[k] * factors[k]),
+            best: self.best.map(|best| [0, 1, 2].map(|k| best[k] * factors[k])),
             ..self.clone()
         }
     }

@@ -170,6 +170,11 @@ impl Leg {
             Arm::Hinge => self.hinge()?,
             Arm::Planar => self.planar()?,
             Arm::Fixed => self.fixed(learned()?.mean)?,
+            Arm::FixedBest => {
+                let message = "the arm `fixed-best` needs the best centre of recordings";
+                let best = learned()?.best;
+                self.fixed(best.ok_or_else(|| Error::new("arms/centre", message))?)?
+            }
             Arm::FixedC4 => self.fixed(learned()?.at_zero())?,
             Arm::Learned => {
                 let centre = learned()?;

@@ -8,14 +8,15 @@
 //! | --- | --- | --- | --- |
 //! | `hinge` | 1 | where it is while the person stands | flexion; the others as while the person stands |
 //! | `planar` | 1 | forward and upward by the splines of Yamaguchi & Zajac 1989 of flexion, which begin where the hinge is | flexion |
-//! | `fixed` | 3 | the best constant: the mean over the frames that the law is learned from, its least squares without slopes | all |
+//! | `fixed` | 3 | the constant nearest to the centre: the mean over the frames that the law is learned from, its least squares without slopes | all |
 //! | `fixed-c4` | 3 | the constant of the law, c₄ of the paper: where its angles are 0 | all |
+//! | `fixed-best` | 3 | the constant that leaves the least at the markers of those frames | all |
 //! | `learned` | 3 | the law | all |
 //! | `free` | 6 | free | all |
 //!
 //! The paper compares `hinge` (its 1DOF), `planar` (3DOF) and `learned` (3⁺DOF). From `planar` to `learned` two angles become free
 //! *and* the centre is learned. `fixed` tells both gains apart: hinge to fixed is that of freer rotation, fixed to learned that of the
-//! centre.
+//! centre. `fixed-best` is asked for more: laws and means are fitted to where tracking puts the centre, it to the markers themselves.
 //!
 //! Contract: an arm is a function of the leg and of what was [learned](Centre) alone; every arm has the coordinates of the leg, in
 //! its order; coordinates that are not free are locked or follow. `free` is the leg itself.

@@ -56,7 +56,7 @@ fn law(leg: &Leg) -> Centre {
         inverse: vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
         distance: 10.0,
     };
-    Centre { laws: [of(0), of(1), of(2)], mean: at, region, frames: 0 }
+    Centre { laws: [of(0), of(1), of(2)], mean: at, best: None, region, frames: 0 }
 }
 
 /// A motion of an arm that moves whatever is free in it, as markers see it.
@@ -254,4 +254,27 @@ fn of_one_trial_blocks_of_time_are_left_out() {
         assert_eq!(residuals.frames(), 60, "{arm:?}");
     }
     assert!(one.of(Arm::Learned).unwrap().mean() < 1e-5);
+}
+
+/// A person whose knee is a fixed centre, off from where it is while the person stands: the best constant finds it from markers.
+#[test]
+fn the_best_constant_centre_is_the_fixed_centre_that_there_is() {
+    let off = [0.012, -0.02, 0.008];
+    let knee = |leg: &Leg| {
+        let place = [0, 1, 2].map(|axis| leg.standing()[axis] + off[axis]);
+        let centre = Centre { mean: place, ..law(leg) };
+        leg.arm(Arm::Fixed, Some(&centre)).unwrap()
+    };
+    let persons = [person("Anna", 0.42, 0.09, &knee)];
+    let all = compare(&persons, &How::default(), &mut |_| {}).unwrap().value;
+    for one in &all {
+        let best = one.parts[0].centre.best.unwrap();
+        for axis in 0..3 {
+            let truth = persons[0].leg.standing()[axis] + off[axis];
+            // The search stops at a tenth of a millimetre.
+            assert!((best[axis] - truth).abs() < 1e-4, "{:?}: {best:?}", one.question);
+        }
+        assert!(one.of(Arm::FixedBest).unwrap().mean() < 1e-4);
+        assert!(one.of(Arm::Hinge).unwrap().mean() > 1e-3);
+    }
 }

@@ -1,5 +1,6 @@
 //! What is learned from what, and asked about what.
 
+use super::best::{Seen, best};
 use super::person::{Followed, Person};
 use super::residuals::{Residuals, frames_of};
 use crate::tracking::Request;
@@ -12,7 +13,7 @@ use std::ops::Range;
 /// From what a law is learned that is asked about a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Question {
-    /// All other trials of the person.
+    /// All other trials of the person, where one of them at least is of the same kind of motion.
     OtherTrials,
     /// Other trials of the person in which the motion is of the same kind; where there are none, the rest of the trial itself, of which
     /// blocks of time are left out in turn.
@@ -97,7 +98,7 @@ pub struct Compared {
     pub learned_from: Vec<String>,
     /// The frames that were left out together: all, or block by block.
     pub parts: Vec<Part>,
-    /// What each arm leaves, in the order of [`Arm::ALL`].
+    /// What each arm leaves, in the order of [`Arm::COMPARED`].
     pub arms: Vec<(Arm, Residuals)>,
 }
 
@@ -117,6 +118,9 @@ struct Source {
     scaled: Option<(usize, bool)>,
 }
 
+/// The best constant centre is sought over so many frames.
+const FRAMES: usize = 300;
+
 /// Everything that was tracked so far.
 struct Bench<'a> {
     persons: &'a [Person],
@@ -135,16 +139,7 @@ impl Bench<'_> {
             if samples.columns.is_empty() {
                 samples.columns = of.leg.keys().to_vec();
             }
-            let factors = match source.scaled {
-                None => [1.0; 3],
-                Some((to, per_axis)) => {
-                    let scaling = if per_axis { Scaling::PerAxis } else { Scaling::Pronost2010 };
-                    match (of.sizes, self.persons[to].sizes) {
-                        (Some(from), Some(to)) => scaling.factors(from, to),
-                        _ => [1.0; 3],
-                    }
-                }
-            };
+            let factors = self.factors(source, person);
             let followed = &self.free[person][trial];
             let left_out =
                 |frame: &usize| !source.without.as_ref().is_some_and(|w| w.contains(frame));
@@ -162,11 +157,43 @@ impl Bench<'_> {
         Ok(samples)
     }
 
+    /// The frames of a source, thinned, by the persons who move in them.
+    fn seen(&self, source: &Source) -> Vec<Seen<'_>> {
+        let each = (FRAMES / source.trials.len().max(1)).max(10);
+        let trials = source.trials.iter().map(|&(person, trial)| {
+            let of = &self.persons[person];
+            let left_out =
+                |frame: &usize| !source.without.as_ref().is_some_and(|w| w.contains(frame));
+            let rows = &self.free[person][trial].rows;
+            let used: Vec<usize> =
+                (0..rows.len()).filter(left_out).filter(|frame| rows[*frame].is_some()).collect();
+            let used: Vec<usize> =
+                used.iter().copied().step_by(used.len().div_ceil(each).max(1)).collect();
+            Seen {
+                leg: &of.leg,
+                recording: frames_of(&of.trials[trial].recording, &used),
+                factors: self.factors(source, person),
+            }
+        });
+        trials.collect()
+    }
+
+    /// How many times as large the places of a person are in a source.
+    fn factors(&self, source: &Source, person: usize) -> [f64; 3] {
+        let Some((to, per_axis)) = source.scaled else { return [1.0; 3] };
+        let scaling = if per_axis { Scaling::PerAxis } else { Scaling::Pronost2010 };
+        match (self.persons[person].sizes, self.persons[to].sizes) {
+            (Some(from), Some(to)) => scaling.factors(from, to),
+            _ => [1.0; 3],
+        }
+    }
+
     fn centre(&mut self, source: &Source) -> Result<Centre, Error> {
         if let Some(known) = self.centres.get(source) {
             return Ok(known.clone());
         }
-        let centre = Centre::of(&self.samples(source)?, &self.how.settings)?;
+        let mut centre = Centre::of(&self.samples(source)?, &self.how.settings)?;
+        centre.best = Some(best(&self.seen(source), centre.mean, &self.how.request)?);
         self.centres.insert(source.clone(), centre.clone());
         Ok(centre)
     }
@@ -202,10 +229,10 @@ impl Bench<'_> {
         let leg = &self.persons[person].leg;
         let recording = &self.persons[person].trials[trial].recording;
         let whole = *frames == (0..recording.frames());
-        let cut = (!whole).then(|| frames_of(recording, frames.clone()));
+        let cut = (!whole).then(|| frames_of(recording, &Vec::from_iter(frames.clone())));
         let recording = cut.as_ref().unwrap_or(recording);
         let mut all = vec![];
-        for arm in Arm::ALL.into_iter().filter(|arm| arm.is_learned()) {
+        for arm in Arm::COMPARED.into_iter().filter(|arm| arm.is_learned()) {
             let model = leg.arm(arm, Some(&centre))?;
             all.push((arm, Residuals::of(leg, &model, recording, &self.how.request)?));
         }
@@ -216,7 +243,7 @@ impl Bench<'_> {
 
 /// Learns for each trial from others and tracks it with every arm. `progress` is told what is done.
 ///
-/// Which questions are asked follows from the trials: other trials where a person has two or more, other motions where they are of two
+/// Which questions are asked follows from the trials: other trials where a person has two or more of a kind, other motions where they are of two
 /// kinds or more, other persons where there are two or more whose sizes are known.
 ///
 /// # Errors
@@ -279,7 +306,7 @@ fn asked(
     sources: &[(Source, Range<usize>)],
 ) -> Result<Compared, Error> {
     let mut arms: Vec<(Arm, Residuals)> =
-        Arm::ALL.into_iter().map(|arm| (arm, Residuals::default())).collect();
+        Arm::COMPARED.into_iter().map(|arm| (arm, Residuals::default())).collect();
     let mut parts = vec![];
     for (source, frames) in sources {
         let learned = bench.learned(source, person, trial, frames)?;
@@ -322,7 +349,11 @@ fn sources(
         (!source.trials.is_empty()).then(|| vec![(source, 0..frames)])
     };
     match question {
-        Question::OtherTrials => whole(of_own(others().collect()), None),
+        // Where all others are of other kinds this is what those say.
+        Question::OtherTrials => others()
+            .any(|other| kind(other) == kind(trial))
+            .then(|| whole(of_own(others().collect()), None))
+            .flatten(),
         Question::SameMotion => {
             let same: Vec<usize> = others().filter(|other| kind(*other) == kind(trial)).collect();
             match (same.is_empty(), kinds) {

@@ -13,16 +13,19 @@
 //! | --- | --- |
 //! | `residuals` | one trial with one arm |
 //! | `person` | trials of one person, tracked with the free joint |
+//! | `best` | the constant centre that leaves the least at markers |
 //! | `compared` | what is learned from what, and asked about what |
 //! | `sums` | trials of a kind together, and the gains of one arm over another |
 //! | `table` | Markdown and CSV |
 
+mod best;
 mod compared;
 mod person;
 mod residuals;
 mod sums;
 mod table;
 
+pub(super) use best::{Seen, best};
 pub use compared::{Compared, How, Part, Question, compare};
 pub use person::{Person, Trial};
 pub use residuals::Residuals;

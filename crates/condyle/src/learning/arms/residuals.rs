@@ -64,6 +64,21 @@ impl Residuals {
         residuals
     }
 
+    /// The sum over markers and frames of squared distances, in m², and how many distances there are.
+    pub(super) fn squares(leg: &Leg, tracking: &Tracking) -> (f64, usize) {
+        let used = Self::of_tracking(leg, tracking);
+        let told = |frame: &usize| used.rms.get(*frame).is_some_and(|rms| rms.is_finite());
+        let (mut sum, mut count) = (0.0, 0);
+        for frame in (0..tracking.answers.len()).filter(told) {
+            let answer = tracking.answers.at(frame);
+            for error in answer.marker_errors.iter().filter(|error| error.is_finite()) {
+                sum += error * error;
+                count += 1;
+            }
+        }
+        (sum, count)
+    }
+
     /// How many frames are counted.
     #[must_use]
     pub fn frames(&self) -> usize {
@@ -121,20 +136,19 @@ impl Residuals {
 /// A segment is seen with so many markers.
 const FEWEST: usize = 3;
 
-/// Some frames of a recording.
-pub(super) fn frames_of(recording: &Recording, frames: Range<usize>) -> Recording {
+/// Some frames of a recording, one after another.
+pub(super) fn frames_of(recording: &Recording, frames: &[usize]) -> Recording {
     let width = recording.labels.len();
-    let end = frames.end.min(recording.frames());
-    let frames = frames.start.min(end)..end;
-    let cells = frames.start * width..frames.end * width;
-    let positions: Vec<Observed> =
-        recording.positions.get(cells.clone()).unwrap_or_default().to_vec();
-    let of = |all: &Vec<f64>| all.get(cells.clone()).unwrap_or_default().to_vec();
+    let frames = frames.iter().copied().filter(|frame| *frame < recording.frames());
+    let frames: Vec<usize> = frames.collect();
+    let cells = || frames.iter().flat_map(|frame| frame * width..(frame + 1) * width);
+    let place = |cell| recording.positions.get(cell).copied().unwrap_or(Observed::MISSING);
+    let sure = |all: &Vec<f64>| cells().filter_map(|cell| all.get(cell).copied()).collect();
     Recording {
         labels: recording.labels.clone(),
-        times: recording.times.get(frames).unwrap_or_default().to_vec(),
-        positions,
-        confidences: recording.confidences.as_ref().map(of),
+        times: frames.iter().filter_map(|frame| recording.times.get(*frame).copied()).collect(),
+        positions: cells().map(place).collect(),
+        confidences: recording.confidences.as_ref().map(sure),
         ..*recording
     }
 }

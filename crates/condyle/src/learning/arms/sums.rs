@@ -56,10 +56,12 @@ impl Group {
 /// A step from one arm to a freer or a learned one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Gain {
-    /// From the hinge to three rotations about the best constant centre: freer rotation.
+    /// From the hinge to three rotations about the mean centre: freer rotation.
     Rotation,
     /// From there to the learned centre.
     Centre,
+    /// From the constant centre that is best for the markers to the learned one.
+    OverBest,
     /// From the planar knee to the learned one: both together, as Pronost et al. 2010 have it (3DOF to 3⁺DOF).
     OverPlanar,
     /// From the hinge to the learned one (1DOF to 3⁺DOF).
@@ -68,7 +70,8 @@ pub enum Gain {
 
 impl Gain {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Rotation, Self::Centre, Self::OverPlanar, Self::OverHinge];
+    pub const ALL: [Self; 5] =
+        [Self::Rotation, Self::Centre, Self::OverBest, Self::OverPlanar, Self::OverHinge];
 
     /// From which arm to which.
     #[must_use]
@@ -76,6 +79,7 @@ impl Gain {
         match self {
             Self::Rotation => [Arm::Hinge, Arm::Fixed],
             Self::Centre => [Arm::Fixed, Arm::Learned],
+            Self::OverBest => [Arm::FixedBest, Arm::Learned],
             Self::OverPlanar => [Arm::Planar, Arm::Learned],
             Self::OverHinge => [Arm::Hinge, Arm::Learned],
         }
@@ -87,6 +91,7 @@ impl Gain {
         match self {
             Self::Rotation => "freer rotation (hinge to fixed)",
             Self::Centre => "learned centre (fixed to learned)",
+            Self::OverBest => "fixed-best to learned",
             Self::OverPlanar => "planar to learned",
             Self::OverHinge => "hinge to learned",
         }
@@ -152,7 +157,7 @@ pub fn groups(persons: &[Person], compared: &[Compared]) -> Vec<Group> {
     let finished = groups.into_iter().map(|(mut group, all)| {
         group.trials = all.len();
         group.in_blocks = all.iter().filter(|one| one.parts.len() > 1).count();
-        group.arms = Arm::ALL
+        group.arms = Arm::COMPARED
             .into_iter()
             .map(|arm| {
                 let own: Vec<_> = all.iter().filter_map(|one| one.of(arm)).collect();

@@ -69,7 +69,9 @@ pub fn markdown(persons: &[Person], compared: &[Compared]) -> String {
         for gain in Gain::ALL {
             let _ = write!(out, " {} |", gain.name());
         }
-        out.push_str("\n| --- | --- | --- | --- | --- | --- |\n");
+        out.push_str("\n| --- | --- |");
+        Gain::ALL.iter().for_each(|_| out.push_str(" --- |"));
+        out.push('\n');
         let own: Vec<_> = gained.iter().filter(|gains| gains.question == question).collect();
         for four in own.chunks(Gain::ALL.len()) {
             let Some(first) = four.first() else { continue };

@@ -54,7 +54,7 @@ type Knee = (String, usize, Model);
 fn knees(runs: &[Run], run: &Run, leg: &Leg, motion: usize) -> Result<Vec<Knee>, Error> {
     let [own, other] = [&run.learned[motion].centre, &run.learned[1 - motion].centre];
     let mut knees: Vec<Knee> = vec![];
-    for arm in Arm::ALL {
+    for arm in Arm::COMPARED {
         let model = leg.arm(arm, Some(own))?;
         knees.push((arm.name().to_owned(), arm.coordinates(), model));
     }
