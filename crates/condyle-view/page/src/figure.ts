@@ -6,6 +6,7 @@ import {
   BufferAttribute,
   BufferGeometry,
   Color,
+  DetachedBindMode,
   Float32BufferAttribute,
   Matrix4,
   MeshStandardMaterial,
@@ -138,6 +139,8 @@ export class Figure {
     this.material = new MeshStandardMaterial({ vertexColors: true, roughness: 0.75, metalness: 0 });
     this.mesh = new SkinnedMesh(shape.geometry, this.material);
     this.mesh.frustumCulled = false;
+    // Matrices are of the world: the place of the mesh comes on top of them.
+    this.mesh.bindMode = DetachedBindMode;
     this.mesh.bind(this.skeleton, new Matrix4());
     this.moved();
   }
