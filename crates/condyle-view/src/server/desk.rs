@@ -1,7 +1,7 @@
 //! What is shown and edited at present.
 
 use super::messages::{Add, Edit, path_json};
-use crate::{Mode, Session, Shown};
+use crate::{Mode, Session, shown};
 use condyle::authoring::{Authoring, AuthoringError, Fault, Written};
 use condyle::formats::document::edit::Editable;
 use condyle::open::{self, Cause, OpenError};
@@ -275,7 +275,7 @@ impl State {
         session.model = model;
         if !same {
             let opened =
-                self.motions.iter().filter_map(|path| Shown::open(path, &session.model).ok());
+                self.motions.iter().filter_map(|path| shown(path, &session.model).ok());
             session.motions = opened.map(|read| read.value).collect();
         }
         session.motions.retain(|shown| fits(&shown.motion, session.model.stored_len()));
