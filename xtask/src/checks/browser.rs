@@ -7,7 +7,11 @@ use crate::tool;
 use std::process::Command;
 use std::time::Duration;
 
-/// The longest that all of it may take, on a machine that does other things as well.
+/// What is run: the page as a file and as a static site, and the page as it is served, which edits a model.
+const SCRIPTS: [&str; 2] = ["browser.mjs", "authoring.mjs"];
+/// The texts of the shipped models.
+const MODELS: &str = "crates/condyle/models";
+/// The longest that each of them may take, on a machine that does other things as well.
 const LIMIT: Duration = Duration::from_secs(1200);
 
 pub(super) fn run(context: &Context) -> Outcome {
@@ -28,9 +32,12 @@ pub(super) fn run(context: &Context) -> Outcome {
     let built = cargo::build(context, &["--package", "condyle-cli"]);
     let result = built.and_then(|programs| {
         let (_, command) = programs.first().ok_or("cargo named no program")?;
-        let mut node = Command::new("node");
-        node.arg(page.join("test/browser.mjs")).arg(command).arg(which(&browser));
-        tool::run_within(LIMIT, &mut node)
+        for script in SCRIPTS {
+            let mut node = Command::new("node");
+            node.arg(page.join("test").join(script)).arg(command).arg(which(&browser));
+            tool::run_within(LIMIT, node.arg(context.root.join(MODELS)))?;
+        }
+        Ok(())
     });
     result.into()
 }

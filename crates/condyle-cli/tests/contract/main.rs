@@ -10,6 +10,7 @@ mod convert;
 mod coupling;
 mod diff;
 mod document;
+mod export;
 mod fk;
 mod given;
 mod info;

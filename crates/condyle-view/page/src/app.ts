@@ -120,6 +120,11 @@ export class App {
   took(taken: Taken, name: string): void {
     if (taken.model) {
       this.open(taken.model, name.replace(/\.[^.]*$/, ""), taken.motion ? [taken.motion] : []);
+    } else if (taken.motion && this.model && taken.motion.times.length === 1 && !taken.motion.markers) {
+      // One frame is a pose, not a motion.
+      this.chosen = [-1, -1];
+      this.motionsChanged();
+      this.put(Float64Array.from(taken.motion.values), true);
     } else if (taken.motion) {
       this.motions.push(taken.motion);
       this.chosen = [this.motions.length - 1, this.chosen[0]];
