@@ -69,7 +69,7 @@ impl Person {
             _ => Knee::Planar(size),
         };
         let tilt = if index % 2 == 1 && index > 1 { [0.07, -0.05] } else { [0.0; 2] };
-        // Markers are 1.5 mm (SD) beside their landmarks: constants of T_z then spread over people by 8 mm; those of
+        // Markers are 1.5 mm (SD) beside their landmarks: constants of T_z then spread over people by 7 mm; those of
         // Table 1 of Pronost et al. 2010 do by 5.
         let mut beside = |[x, y, z]: [f64; 3]| {
             Vec3::new(x, y, z) + Vec3::new(dice.normal(), dice.normal(), dice.normal()) * 1.5e-3
