@@ -136,5 +136,5 @@ fn shank(model: &Model, pose: &Value) -> Affine {
     let program = Program::compile(model);
     let mut posed = Pose::new(&program);
     program.evaluate(&stored, Mode::Open, &mut posed).unwrap();
-    *posed.segment(model.find_segment("shank_r").unwrap())
+    posed.segment(model.find_segment("shank_r").unwrap())
 }

@@ -6,7 +6,7 @@ use condyle::math::Vec3;
 /// The origin of the tibia in the femur.
 fn origin(knee: &Figure, values: &[(&str, f64)]) -> Vec3 {
     let pose = knee.open(&knee.set(values));
-    let [femur, tibia] = ["femur_r", "tibia_r"].map(|name| *pose.segment(knee.id(name)));
+    let [femur, tibia] = ["femur_r", "tibia_r"].map(|name| pose.segment(knee.id(name)));
     (femur.rigid_inverse() * tibia).translation
 }
 
