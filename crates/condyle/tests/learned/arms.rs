@@ -158,7 +158,7 @@ fn person(name: &str, length: f64, width: f64, true_knee: &dyn Fn(&Leg) -> Model
     Person { name: name.to_owned(), leg, sizes: Some(sizes), trials }
 }
 
-fn of<'a>(all: &'a [Compared], question: Question) -> Vec<&'a Compared> {
+fn of(all: &[Compared], question: Question) -> Vec<&Compared> {
     all.iter().filter(|one| one.question == question).collect()
 }
 
