@@ -1,8 +1,8 @@
 //! Any text as a document: no panic; a kind that does not contradict the reader; as a model, errors
-//! that can be shown, and the same model after writing and reading again; as a limit likewise.
+//! that can be shown, and the same model after writing and reading again; as a limit or a law likewise.
 #![no_main]
 
-use condyle_formats::document::{Kind, kind, limit, read_with, render, write};
+use condyle_formats::document::{Kind, kind, law, limit, read_with, render, write};
 use condyle_math::{Affine, Mat3, Scalar, Vec3};
 use condyle_model::component::{MotionLaw, Registry};
 use condyle_model::{Mode, Pose, Program};
@@ -41,6 +41,21 @@ fuzz_target!(|data: &[u8]| {
                 assert_eq!(again.expect("it was written").value.ground(), limit.ground());
             }
             Err(errors) => assert!(!errors.is_empty()),
+        }
+        return;
+    }
+    if found == Some(Kind::Law) {
+        match law::read(&text, &mut |_| Err("nothing there".to_owned())) {
+            Ok(read) => {
+                let written = law::write(&read.value);
+                let again = match law::read(&written, &mut |_| Err(String::new())) {
+                    Ok(again) => again.value,
+                    Err(errors) => panic!("{}\n{written}", render("written", &written, &errors)),
+                };
+                assert_eq!(again.laws.len(), read.value.laws.len());
+                assert_eq!(law::write(&again), written);
+            }
+            Err(errors) => assert!(render("text", &text, &errors).lines().count() >= errors.len()),
         }
         return;
     }

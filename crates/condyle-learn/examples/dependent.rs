@@ -40,6 +40,7 @@ fn main() {
                 about: About::default(),
                 name: "driver".into(),
                 reference: None,
+                kind: None,
                 settings: Some(settings),
                 whole: Settings::default(),
                 curves: None,

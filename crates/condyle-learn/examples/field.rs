@@ -3,6 +3,8 @@
 //! | part | what |
 //! | --- | --- |
 //! | `accuracy`, `aside`, `drawn`, `unseen` | of six shapes, of six others, of four drawn at random, of four more that were kept aside: balanced accuracy at true distances of 2 and 3 degrees, volume over the true one, how far the nearest rotation is from the true boundary and how wrong the distance is (median and 99th percentile, up to 10 degrees outside) |
+//! | `later` | of eight more that were drawn, kept aside until edges and gaps were settled anew |
+//! | `seeds COUNTS SET` | of six clouds of each shape of a set (`shapes`, `aside`, `drawn`, `unseen`, `later`; `all` but the last): accuracies at 2 and 3 degrees, and volume, as the mean and the worst |
 //! | `disturbed`, `disturbed-unseen` | accuracy with noise of 1 and 2 degrees about each axis, and with one half 12 times as dense as the other |
 //! | `projection` | nearest rotations beside the best of 100 000 places on the field's own boundary |
 //! | `compare` | the same samples by a threshold on the distance to the nearest sample, set by leaving samples out, and by cells of a grid |
@@ -35,6 +37,8 @@ fn main() {
         "unseen" => accuracies(&drawn::UNSEEN, &counts, &[("", 0.0, 1.0)]),
         "disturbed" => accuracies(&SHAPES, &counts, &DISTURBED),
         "disturbed-unseen" => accuracies(&drawn::UNSEEN, &counts, &DISTURBED),
+        "later" => accuracies(&drawn::LATER, &counts, &[("", 0.0, 1.0)]),
+        "seeds" => clouds(arguments.get(2).map_or("all", String::as_str), &counts, 6),
         "projection" => projection(&SHAPES),
         "compare" => compare(&counts),
         "speed" => speed(),
@@ -127,6 +131,63 @@ fn accuracies(shapes: &[Shape], counts: &[usize], kinds: &[(&str, f64, f64)]) {
                 learned.spacing.to_degrees(),
                 learned.holes.len(),
             );
+        }
+    }
+}
+
+/// Several clouds of each shape: accuracies at 2 and 3 degrees and volume, as the mean and the worst; where errors lie at
+/// 3 degrees, as shares of what is outside and inside.
+fn clouds(which: &str, counts: &[usize], seeds: u64) {
+    let sets: [(&str, &[Shape]); 5] = [
+        ("shapes", &SHAPES),
+        ("aside", &ASIDE),
+        ("drawn", &drawn::SEEN),
+        ("unseen", &drawn::UNSEEN),
+        ("later", &drawn::LATER),
+    ];
+    println!(
+        "shape | samples | at 2°, mean and least | at 3° | outside, inside | volume, mean, least, most"
+    );
+    for (name, shapes) in sets {
+        if which != name && (which != "all" || name == "later") {
+            continue;
+        }
+        for shape in shapes {
+            let mut random = Random(0x9E37_79B9_7F4A_7C15);
+            let share = shape.share(&mut random);
+            let boundary = shape.boundary(20_000, &mut random);
+            let [two, three] = [2.0f64, 3.0]
+                .map(|degrees| boundary.at(shape, degrees.to_radians(), 1200, &mut random));
+            for &count in counts {
+                let mut found: [Vec<f64>; 5] = Default::default();
+                for seed in 0..seeds {
+                    let mut random = Random(0x1234_5678_9ABC_DEF1 ^ (seed + 1) << 33);
+                    let field = learned(&shape.samples(count, &mut random));
+                    let valid = |q| field.state(q).0 == State::Valid;
+                    let of_three = accuracy(&three, valid);
+                    found[0].push(accuracy(&two, valid)[0]);
+                    for (found, of) in found[1..4].iter_mut().zip(of_three) {
+                        found.push(of);
+                    }
+                    found[4].push(field.learned().valid / share);
+                }
+                let mean = |i: usize| found[i].iter().sum::<f64>() / found[i].len() as f64;
+                let least = |i: usize| found[i].iter().copied().fold(f64::INFINITY, f64::min);
+                let most = |i: usize| found[i].iter().copied().fold(0.0, f64::max);
+                println!(
+                    "{} | {count} | {:.3}, {:.3} | {:.3}, {:.3} | {:.3}, {:.3} | {:.3}, {:.3}, {:.3}",
+                    shape.name,
+                    mean(0),
+                    least(0),
+                    mean(1),
+                    least(1),
+                    mean(2),
+                    mean(3),
+                    mean(4),
+                    least(4),
+                    most(4),
+                );
+            }
         }
     }
 }

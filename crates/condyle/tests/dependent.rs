@@ -42,6 +42,7 @@ fn text(name: &str, reference: Option<&str>, rotations: &[Quat], drivers: Driver
         about,
         name: name.into(),
         reference: reference.map(str::to_owned),
+        kind: None,
         settings: None,
         whole: Settings { nodes: 24, ..Settings::default() },
         curves: None,

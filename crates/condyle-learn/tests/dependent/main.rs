@@ -17,6 +17,7 @@ fn learned(law: &Law, count: usize, nodes: usize) -> LearnedLimit {
         about: About::default(),
         name: "driver".into(),
         reference: None,
+        kind: None,
         settings: Some(settings),
         whole: Settings { nodes: 48, ..Settings::default() },
         curves: None,

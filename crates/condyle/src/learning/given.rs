@@ -33,6 +33,8 @@ pub struct Driven {
     pub name: String,
     /// Of a rotation, the segment in which it is seen.
     pub reference: Option<String>,
+    /// What a coordinate measures, as far as the recording tells.
+    pub kind: Option<CoordinateKind>,
     /// Its values.
     pub drivers: Drivers,
 }
@@ -44,8 +46,8 @@ fn column(table: &Table, name: &str) -> Option<usize> {
     table.columns.iter().position(|own| own.trim().eq_ignore_ascii_case(name))
 }
 
-/// The driver in each row of a table: the column of its name, in radians or metres, or that name with `_deg`; of a rotation gx,
-/// gy, gz, gw. `None` in rows without.
+/// The driver in each row of a table: the column of its name, in radians or metres, or that name with `_deg` or `_m`; of a
+/// rotation gx, gy, gz, gw. `None` in rows without.
 ///
 /// # Errors
 /// `given/columns` if the table has none of these.
@@ -56,7 +58,11 @@ pub fn drivers_of_table(
 ) -> Result<Vec<Option<Driver>>, Error> {
     let rows = 0..table.rows();
     let cell = |row: usize, at: usize| table.row(row).get(at).copied().unwrap_or(f64::NAN);
-    let scalar = [(name.to_owned(), 1.0), (format!("{name}_deg"), 1f64.to_radians())];
+    let scalar = [
+        (name.to_owned(), 1.0),
+        (format!("{name}_deg"), 1f64.to_radians()),
+        (format!("{name}_m"), 1.0),
+    ];
     let scalar = scalar.iter().find_map(|(name, unit)| Some((column(table, name)?, *unit)));
     if let Some((at, unit)) = scalar.filter(|_| turns != Some(true)) {
         let value = |row| Some(cell(row, at) * unit).filter(|value| value.is_finite());
@@ -73,8 +79,10 @@ pub fn drivers_of_table(
     }
     let wanted = match turns {
         Some(true) => "gx, gy, gz, gw: the rotation of what the limit depends on".to_owned(),
-        Some(false) => format!("`{name}` in radians, or `{name}_deg` in degrees"),
-        None => format!("`{name}`, `{name}_deg`, or gx, gy, gz, gw"),
+        Some(false) => format!(
+            "`{name}` in radians or metres, `{name}_deg` in degrees, or `{name}_m` in metres"
+        ),
+        None => format!("`{name}`, `{name}_deg`, `{name}_m`, or gx, gy, gz, gw"),
     };
     let message =
         format!("the table does not tell `{name}`: its columns are {}", listed(&table.columns));
@@ -105,7 +113,7 @@ pub(super) fn kept(
     }
     let drivers =
         if turns.is_empty() { Drivers::Scalars(scalars) } else { Drivers::Rotations(turns) };
-    Driven { name, reference, drivers }
+    Driven { name, reference, kind: None, drivers }
 }
 
 fn by_frame(turned: &Orientated, frames: usize) -> Vec<Option<Driver>> {
@@ -151,7 +159,8 @@ pub(super) fn of_motion(
             let value = |frame: &Vec<f64>| frame.get(at).copied().filter(|value| value.is_finite());
             let drivers: Vec<Option<Driver>> =
                 motion.frames.iter().map(|frame| value(frame).map(Driver::Scalar)).collect();
-            Ok(kept(found, &drivers, model.coordinate_key(id), None))
+            let kind = Some(model.coordinate(id).kind);
+            Ok(Driven { kind, ..kept(found, &drivers, model.coordinate_key(id), None) })
         }
         (_, Ok(pair)) => {
             let turned = rotations::segments(model, motion, &[pair])?;
@@ -186,7 +195,10 @@ pub(super) fn of_table(
     found: &mut Orientated,
 ) -> Result<Driven, Error> {
     let drivers = drivers_of_table(table, &wished.name, None)?;
-    Ok(kept(found, &drivers, wished.name.clone(), wished.reference.clone()))
+    let driven = kept(found, &drivers, wished.name.clone(), wished.reference.clone());
+    let scalar = matches!(driven.drivers, Drivers::Scalars(_));
+    let metres = scalar && column(table, &format!("{}_m", wished.name)).is_some();
+    Ok(Driven { kind: metres.then_some(CoordinateKind::Translation), ..driven })
 }
 
 /// A limit that depends on another joint, and how it came about.
@@ -272,6 +284,7 @@ pub fn learn_given(
         about: About { source, takes: names, ..about(takes, &cloud, name) },
         name: first.name.clone(),
         reference: first.reference.clone(),
+        kind: first.kind,
         settings: Some(settings),
         whole,
         curves: (!independent).then_some(spacing),

@@ -5,6 +5,7 @@ use crate::output;
 use condyle::learn::limits::dependent::{Dependence, Driver};
 use condyle::learn::limits::{LearnedLimit, percentile};
 use condyle::learning::{self, Bin, LearnedGiven, Take};
+use condyle::model::CoordinateKind;
 use serde_json::{Value, json};
 
 /// So many rows of a table on the screen.
@@ -15,6 +16,27 @@ fn at_json(at: Driver) -> Value {
     match at {
         Driver::Scalar(value) => json!(value),
         Driver::Rotation(q) => json!(q.to_array()),
+    }
+}
+
+/// The unit of the values of a driver, `null` of a rotation.
+fn unit(kind: CoordinateKind) -> Option<&'static str> {
+    match kind {
+        CoordinateKind::Rotation => Some("rad"),
+        CoordinateKind::Translation => Some("m"),
+        CoordinateKind::Scale | CoordinateKind::Other => Some("1"),
+        CoordinateKind::Orientation => None,
+    }
+}
+
+/// A value of a coordinate in the unit that people read.
+fn at_text(kind: CoordinateKind, value: f64) -> String {
+    match kind {
+        CoordinateKind::Translation => format!("{:.1} mm", value * 1e3),
+        CoordinateKind::Scale | CoordinateKind::Other => format!("{value:.3}"),
+        CoordinateKind::Rotation | CoordinateKind::Orientation => {
+            format!("{:.1}°", value.to_degrees())
+        }
     }
 }
 
@@ -32,6 +54,7 @@ pub(in crate::commands) fn bins_json(limit: &LearnedLimit) -> Value {
     let known = dependence.known;
     json!({
         "name": dependence.name,
+        "unit": unit(dependence.kind),
         "reference": dependence.reference,
         "slope": dependence.settings.slope,
         "step": dependence.settings.step,
@@ -69,7 +92,7 @@ pub(in crate::commands) fn bins_text(limit: &LearnedLimit) -> String {
     let mut rows = vec![["at", "samples", "valid", "from", "to"].map(str::to_owned).to_vec()];
     for bin in shown.iter().take(ROWS) {
         let at = match bin.at {
-            Driver::Scalar(value) => format!("{:.1}°", value.to_degrees()),
+            Driver::Scalar(value) => at_text(dependence.kind, value),
             Driver::Rotation(q) => {
                 let turn = q.log().to_array().map(|angle| format!("{:.0}", angle.to_degrees()));
                 format!("turn by {}°", turn.join(", "))

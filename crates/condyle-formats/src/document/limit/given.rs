@@ -6,12 +6,14 @@ use super::write::{letters, packed_samples};
 use super::{Fields, Reader};
 use crate::text::base64;
 use condyle_learn::limits::dependent::{Dependence, DependenceKnown, DependenceSettings, Drivers};
+use condyle_model::CoordinateKind;
 use condyle_model::limit::field::snapped;
 use std::fmt::Write;
 
 const KEYS: &[&str] = &[
     "name",
     "reference",
+    "unit",
     "values",
     "packed",
     "rotations",
@@ -22,6 +24,13 @@ const KEYS: &[&str] = &[
     "layer",
     "radius",
     "gap",
+];
+
+/// Units of coordinates, by what they measure.
+pub(crate) const UNITS: [(CoordinateKind, &str); 3] = [
+    (CoordinateKind::Rotation, "rad"),
+    (CoordinateKind::Translation, "m"),
+    (CoordinateKind::Other, "1"),
 ];
 
 impl Reader<'_> {
@@ -35,6 +44,7 @@ impl Reader<'_> {
             None => None,
         };
         let drivers = self.drivers(&fields)?;
+        let kind = self.kind(&fields, &drivers)?;
         if drivers.len() != samples {
             let message = format!("{} values for {samples} samples", drivers.len());
             self.length(fields.spot, message, "give the driver at each sample");
@@ -75,7 +85,21 @@ impl Reader<'_> {
                 return None;
             }
         };
-        Some(Dependence { name, reference, drivers, settings, known })
+        Some(Dependence { name, reference, kind, drivers, settings, known })
+    }
+
+    /// What a coordinate measures, by its unit.
+    fn kind(&mut self, fields: &Fields<'_>, drivers: &Drivers) -> Option<CoordinateKind> {
+        let Some(node) = fields.get("unit") else { return Some(drivers.usual_kind()) };
+        let unit = self.text(node, "unit")?;
+        let kind = UNITS.iter().find(|(_, name)| *name == unit.text).map(|(kind, _)| *kind);
+        if kind.is_none() || matches!(drivers, Drivers::Rotations(_)) {
+            let message = format!("`{}` is no unit of what the limit depends on", unit.text);
+            let help = "\"rad\", \"m\" or \"1\" of a coordinate, none of a rotation";
+            self.texts.error(unit.spot, "limit/unit", message, help);
+            return None;
+        }
+        kind
     }
 
     fn drivers(&mut self, fields: &Fields<'_>) -> Option<Drivers> {
@@ -133,12 +157,17 @@ impl Reader<'_> {
 
 /// Writes what a limit depends on.
 pub(super) fn given(out: &mut String, dependence: &Dependence, within: &str) {
-    let Dependence { name, reference, drivers, settings, known } = dependence;
+    let Dependence { name, reference, kind, drivers, settings, known } = dependence;
     let DependenceSettings { slope, step, nodes, few, gap } = settings;
     let _ = writeln!(out, "\n[{within}given]");
     let _ = writeln!(out, "name = {}", text(name));
     if let Some(reference) = reference {
         let _ = writeln!(out, "reference = {}", text(reference));
+    }
+    if *kind != drivers.usual_kind()
+        && let Some((_, unit)) = UNITS.iter().find(|(own, _)| own == kind)
+    {
+        let _ = writeln!(out, "unit = {}", text(unit));
     }
     let _ = writeln!(out, "slope = {}", number(*slope));
     let _ = writeln!(out, "step = {}", number(*step));

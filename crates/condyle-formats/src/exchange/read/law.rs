@@ -8,7 +8,6 @@ use condyle_learn::limits::dependent::{
 };
 use condyle_learn::limits::field::made;
 use condyle_math::{EulerOrder, Quat, Vec3};
-use condyle_model::Law;
 use condyle_model::component::{
     Along, AngleNames, Angles, Ball, Centre, Combine, Compensate, ConstantCurvature, Contact,
     ContactPair, Correlate, Curve, Depend, Ellipse, Ellipsoid, FieldLimit, Gliding, HalfSpace,
@@ -19,6 +18,7 @@ use condyle_model::limit::field::{
     About, Chart, Ends, Ground, Known, LearnedLimit, Settings, Shape, ShapeError, snapped,
 };
 use condyle_model::limit::{Cone, ConePoint, Projection};
+use condyle_model::{CoordinateKind, Law};
 use std::sync::Arc;
 
 /// The law of a component.
@@ -325,7 +325,19 @@ fn depending(p: &At<'_>, samples: usize) -> Result<Dependence, Error> {
     };
     let reference = p.perhaps("reference").map(|at| at.text().map(str::to_owned)).transpose()?;
     let name = p.key("name")?.text()?.to_owned();
-    Ok(Dependence { name, reference, drivers, settings, known })
+    let kind = match p.perhaps("unit") {
+        None => drivers.usual_kind(),
+        Some(at) => match (at.text()?, &drivers) {
+            ("rad", Drivers::Scalars(_)) => CoordinateKind::Rotation,
+            ("m", Drivers::Scalars(_)) => CoordinateKind::Translation,
+            ("1", Drivers::Scalars(_)) => CoordinateKind::Other,
+            _ => {
+                let help = "give rad, m or 1 of a coordinate, none of a rotation";
+                return Err(at.error("this is no unit of a driver", help));
+            }
+        },
+    };
+    Ok(Dependence { name, reference, kind, drivers, settings, known })
 }
 
 fn contact(p: &At<'_>, inputs: &At<'_>) -> Result<Law, Error> {

@@ -4,7 +4,6 @@ use super::{frame, function, function_of_several, spline, vector};
 use crate::exchange::AXES;
 use condyle_math::Vec3;
 use condyle_math::function::SimmSpline;
-use condyle_model::Law;
 use condyle_model::component::{
     Along, AngleNames, Angles, Ball, Centre, Combine, Compensate, ConstantCurvature, Contact,
     ContactPair, Correlate, Curve, Depend, Ellipsoid, FieldLimit, Gliding, Heading, JointCone, Map,
@@ -16,6 +15,7 @@ use condyle_model::limit::field::dependent::{
 };
 use condyle_model::limit::field::{About, Ends, Ground, Known, Settings, Shape};
 use condyle_model::limit::{ConePoint, Projection};
+use condyle_model::{CoordinateKind, Law};
 use serde_json::{Value, json};
 
 /// The parameters of a component, beside what is at its ports.
@@ -147,7 +147,7 @@ fn cone(JointCone { of, cone }: &JointCone) -> Value {
 /// A learned limit: axes, and all that it was learned from.
 /// What a limit depends on.
 fn given(dependence: &Dependence) -> Value {
-    let Dependence { name, reference, drivers, settings, known } = dependence;
+    let Dependence { name, reference, kind, drivers, settings, known } = dependence;
     let DependenceSettings { slope, step, nodes, few, gap } = settings;
     let (values, rotations) = match drivers {
         Drivers::Scalars(values) => (Some(json!(values)), None),
@@ -160,6 +160,11 @@ fn given(dependence: &Dependence) -> Value {
     json!({
         "name": name,
         "reference": reference,
+        "unit": match kind {
+            CoordinateKind::Translation => Some("m"),
+            CoordinateKind::Scale | CoordinateKind::Other => Some("1"),
+            CoordinateKind::Rotation | CoordinateKind::Orientation => None,
+        },
         "values": values,
         "rotations": rotations,
         "slope": slope,

@@ -5,11 +5,11 @@
 //!    the distance to its boundary from inside.
 //! 2. The boundary of C goes through the outermost samples, so C is too small by a layer (`layer`), thicker where samples
 //!    are sparser (`density`).
-//! 3. Balls half as large find less of a boundary's place, but get into creases: where both differ by more than chance, they count.
+//! 3. Balls a third as large find less of a boundary's place, but get into creases: where both differ by more than chance, they count.
 //! 4. The roughness by chance is evened out (`even`), and F(q) = max over x inside of (distance at x - angle to x).
 //! 5. Where a layer is given, it is an offset: F is that of C, and the layer added.
 //! 6. Empty balls of 2.5 spacings whose centres are more than 2 spacings inside are holes, each
-//!    smaller by the gap.
+//!    smaller by the gap that such a ball leaves.
 //!
 //! A spacing is (volume of C / N)^(1/3); R = 5 spacings, within 20 and 50 degrees; of samples of uneven density
 //! the spacing about the sample that is nearest.
@@ -46,10 +46,13 @@ pub(super) struct Closing {
     pub(super) holes: Vec<(Quat, f64, f64)>,
 }
 
-/// Balls that get into creases have so much of the radius of others, but at least 2.5 spacings.
-const FINE: f64 = 0.5;
+/// Balls that get into creases have so much of the radius of others, but at least 1.75 spacings.
+const FINE: f64 = 0.35;
 /// By so many spacings both closings differ by chance, and by so many surely not.
-const CHANCE: [f64; 2] = [0.2, 0.5];
+const CHANCE: [f64; 2] = [0.15, 0.4];
+
+/// The least of R κ: the largest empty ball is a little larger than its hole.
+const CONFORMING: f64 = 0.05;
 
 /// A little more than every angle there is, for what has no boundary.
 const EVERYWHERE: f32 = 4.0;
@@ -146,7 +149,7 @@ pub(super) fn closing(ground: &Ground, lattice: &Lattice) -> Closing {
     let total = volume(&nodes, &outer);
 
     let spacing_at = |sample: u32| spacing * scale(sample).max(1.0);
-    let holes = hollow(&nodes, &near, &inner, settings, spacing_at, gap_at);
+    let holes = hollow(&nodes, &near, &inner, (settings, ball), spacing_at, gap_at);
     let (carved, hollow_volume, holes) = match holes {
         None => (None, 0.0, vec![]),
         Some((depth, holes)) => {
@@ -315,39 +318,49 @@ fn hollow(
     nodes: &Nodes<'_>,
     near: &Nearest,
     inner: &[f32],
-    settings: &Settings,
+    (settings, ball): (&Settings, f64),
     spacing: impl Fn(u32) -> f64,
     gap: impl Fn(u32) -> f64,
 ) -> Option<(Vec<f32>, Vec<Hole>)> {
     let [size, depth] = settings.hole?;
-    let (mut balls, mut at, mut which) = (vec![], vec![], vec![]);
+    let (mut at, mut which) = (vec![], vec![]);
     for (node, q) in nodes.rotations.iter().enumerate() {
         let Some(q) = q else { continue };
         let (sample, empty) = (near.ball[node], f64::from(near.value[node]));
         let spacing = spacing(sample);
         if empty >= size * spacing && f64::from(inner[node]) > depth * spacing {
-            at.push((node, balls.len() as u32));
-            balls.push(Ball::new(*q, (empty - gap(sample)).max(0.0)));
-            which.push((*q, empty));
+            at.push((node, which.len() as u32));
+            which.push((*q, empty, gap(sample)));
         }
     }
-    if balls.is_empty() {
+    if which.is_empty() {
         return None;
     }
-    let found = nodes.nearest(&balls, at.into_iter());
     // A hole is named by its largest ball; balls that overlap a larger one belong to it.
     let mut order: Vec<usize> = (0..which.len()).collect();
     order.sort_by(|a, b| which[*b].1.total_cmp(&which[*a].1));
     let mut holes: Vec<Hole> = vec![];
     let mut member = vec![u32::MAX; which.len()];
     for index in order {
-        let (q, empty) = which[index];
+        let (q, empty, _) = which[index];
         let held = holes.iter().position(|(p, radius, _)| p.angle_to(q) < radius + empty);
         if held.is_none() && holes.len() < 100 {
             holes.push((q, empty, 0.0));
         }
         member[index] = held.unwrap_or(holes.len() - 1) as u32;
     }
+    // What a ball leaves before a boundary is by √(R κ) of what balls of radius R leave before a flat one, with κ by how much more it is
+    // curved than the boundary: of a hole that is hardly larger than the ball hardly anything.
+    let balls: Vec<Ball> = which
+        .iter()
+        .zip(&member)
+        .map(|((q, empty, gap), hole)| {
+            let largest = holes.get(*hole as usize).map_or(*empty, |hole| hole.1);
+            let more = (ball * (1.0 / empty - 1.0 / largest)).clamp(CONFORMING, 1.0);
+            Ball::new(*q, (empty - gap * more.sqrt()).max(0.0))
+        })
+        .collect();
+    let found = nodes.nearest(&balls, at.into_iter());
     let cell = nodes.lattice.angle();
     for (node, q) in nodes.rotations.iter().enumerate() {
         let Some(q) = q else { continue };

@@ -9,8 +9,7 @@
 //! ```
 //!
 //! which is exact where the boundary is curved evenly, and does not look around edges. What the closing itself takes
-//! off edges, for hardly any sample lies in them, is given back: there F is above its mean over a neighbourhood by more than chance
-//! or curvature explains, and in creases below.
+//! off edges, for hardly any sample lies in them, is given back by what the faces about them say (`edges`).
 
 use super::nearest::Nodes;
 use condyle_model::limit::field::Lattice;
@@ -22,10 +21,6 @@ const MOST: f64 = 0.26;
 const AGREE: f32 = 0.060_307_4;
 /// Slopes are those of the distance spread over so many spacings.
 const GUIDE: f64 = 0.4;
-/// What an edge is above its neighbourhood's mean over `NEAR` spacings, beyond `CHANCE` spacings, is added so many times.
-const SHARPEN: f32 = 1.0;
-const NEAR: f64 = 0.7;
-const CHANCE: f64 = 0.1;
 /// Beyond so many steps from the boundary nothing is changed.
 const BAND: f32 = 3.0;
 
@@ -33,34 +28,25 @@ const BAND: f32 = 3.0;
 pub(super) fn evened(nodes: &Nodes<'_>, distance: &[f32], spacing: f64) -> Vec<f32> {
     let cell = nodes.lattice.angle();
     let guide = spread(nodes.lattice, distance, GUIDE * spacing / cell);
-    let mut even = filtered(nodes, distance, &guide, (WIDE * spacing).min(MOST));
-    let mean = spread(nodes.lattice, &even, NEAR * spacing / cell);
-    let chance = (CHANCE * spacing) as f32;
-    for (even, mean) in even.iter_mut().zip(mean) {
-        let above = *even - mean;
-        let sure = above.abs() - chance;
-        if sure > 0.0 {
-            let part = (2.0 - even.abs() / cell as f32).clamp(0.0, 1.0);
-            *even += SHARPEN * part * sure.copysign(above);
-        }
-    }
-    even
+    let even = filtered(nodes, distance, &guide, (WIDE * spacing).min(MOST));
+    super::edges::edged(nodes, &even, spacing)
 }
 
 /// A node near the boundary: its number, its rotation, the direction and length of the slope per step, the distance.
-struct Near {
-    node: usize,
-    at: [f32; 4],
-    slope: [f32; 3],
-    steep: f32,
-    distance: f32,
+pub(super) struct Near {
+    pub(super) node: usize,
+    pub(super) at: [f32; 4],
+    pub(super) slope: [f32; 3],
+    pub(super) steep: f32,
+    pub(super) distance: f32,
 }
 
-fn dot(a: &[f32; 3], b: &[f32; 3]) -> f32 {
+pub(super) fn dot(a: &[f32; 3], b: &[f32; 3]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-fn filtered(nodes: &Nodes<'_>, distance: &[f32], guide: &[f32], sigma: f64) -> Vec<f32> {
+/// The nodes near the boundary, and for each node its position among them.
+pub(super) fn band(nodes: &Nodes<'_>, distance: &[f32], guide: &[f32]) -> (Vec<u32>, Vec<Near>) {
     let edge = nodes.lattice.edge;
     let cell = nodes.lattice.angle() as f32;
     let mut slot = vec![u32::MAX; guide.len()];
@@ -81,6 +67,13 @@ fn filtered(nodes: &Nodes<'_>, distance: &[f32], guide: &[f32], sigma: f64) -> V
             near.push(Near { node, at: *at, slope, steep, distance: distance[node] });
         }
     }
+    (slot, near)
+}
+
+fn filtered(nodes: &Nodes<'_>, distance: &[f32], guide: &[f32], sigma: f64) -> Vec<f32> {
+    let edge = nodes.lattice.edge;
+    let cell = nodes.lattice.angle() as f32;
+    let (slot, near) = band(nodes, distance, guide);
     let offsets = offsets(edge, 1.6 * sigma / f64::from(cell));
     // angle² is nearly 8 (1 - |p·q|).
     let narrow = (4.0 / (sigma * sigma)) as f32;
@@ -112,7 +105,7 @@ fn filtered(nodes: &Nodes<'_>, distance: &[f32], guide: &[f32], sigma: f64) -> V
 }
 
 /// Steps to the nodes within a radius in steps; every other one along each axis where there are many.
-fn offsets(edge: usize, radius: f64) -> Vec<(isize, [f32; 3])> {
+pub(super) fn offsets(edge: usize, radius: f64) -> Vec<(isize, [f32; 3])> {
     let every = if radius > 3.5 { 2 } else { 1 };
     let (most, edge) = ((radius / f64::from(every)) as i32, edge as isize);
     let mut found = vec![];

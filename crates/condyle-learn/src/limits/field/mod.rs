@@ -4,7 +4,7 @@
 //! Cloud -> Ground               axes               samples as files hold them, the cloud's axes
 //!       -> distances at nodes   closing, nearest   what no empty ball covers, holes carved
 //!                               layer, density     what samples leave before a boundary, more where they are sparse
-//!                               even               roughness by chance evened out, edges kept
+//!                               even, edges        roughness by chance evened out, edges from the faces that meet
 //!       -> Field                condyle-model      a cubic spline over all rotations, and its answers
 //! Shape -> distances at nodes   shape              of a limit that is given by formulas, without samples
 //! ```
@@ -13,6 +13,7 @@ mod axes;
 mod closing;
 mod density;
 pub mod dependent;
+mod edges;
 mod even;
 mod layer;
 mod nearest;

@@ -39,10 +39,10 @@ impl Boundary {
         self.places.len()
     }
 
-    /// Of the places that are nearest to the nodes about a rotation of the map: the nearest, then up to two others that
-    /// are nearly as near and on other parts of the boundary.
+    /// Of the places that are nearest to the nodes about a rotation of the map: the nearest, then up to four others that
+    /// are nearly as near and on other parts of the boundary. Of what is far from the boundary more parts of it are nearly as near.
     #[inline]
-    pub(super) fn starts(&self, lattice: &Lattice, q: Quat) -> [Option<Quat>; 3] {
+    pub(super) fn starts(&self, lattice: &Lattice, q: Quat) -> [Option<Quat>; STARTS] {
         let small = q.to_array().map(|c| c as f32);
         let mut found = [(0.0, [0.0; 4]); 8];
         let mut best = 0;
@@ -56,17 +56,19 @@ impl Boundary {
         }
         let (nearest, place) = found[best];
         if nearest <= 0.0 {
-            return [None; 3];
+            return [None; STARTS];
         }
         let quat =
             |place: [f32; 4]| super::chart::signed(Quat::from(place.map(f64::from)).normalized());
-        let mut starts = [Some(quat(place)), None, None];
+        let mut starts = [None; STARTS];
+        starts[0] = Some(quat(place));
+        let reach = if nearest < FAR { &WIDE } else { &CLOSE };
         // cos(θ/2 + ε) = cos θ/2 cos ε - sin θ/2 sin ε.
-        let least = nearest * COSINE - (1.0 - nearest * nearest).max(0.0).sqrt() * SINE;
-        let (mut taken, mut count) = ([place; 3], 1);
+        let least = nearest * reach.cosine - (1.0 - nearest * nearest).max(0.0).sqrt() * reach.sine;
+        let (mut taken, mut count) = ([place; STARTS], 1);
         for (near, place) in found {
-            let apart = |p: &[f32; 4]| dot(p, &place) < APART;
-            if near > least && count < 3 && taken[..count].iter().all(apart) {
+            let apart = |p: &[f32; 4]| dot(p, &place) < reach.apart;
+            if near > least && count < reach.count && taken[..count].iter().all(apart) {
                 taken[count] = place;
                 starts[count] = Some(quat(place));
                 count += 1;
@@ -76,12 +78,27 @@ impl Boundary {
     }
 }
 
-/// cos and sin of half of 1.5°: by so much the places, which are up to 2° apart, may be wrong about which part of the
-/// boundary is nearest.
-const COSINE: f32 = 0.999_914_3;
-const SINE: f32 = 0.013_089_6;
-/// cos of half of 6°: places that are farther apart are on other parts of the boundary.
-const APART: f32 = 0.998_629_5;
+/// Searches begin at most at so many places.
+pub(super) const STARTS: usize = 5;
+
+/// cos of half of 20°: what is farther from the boundary is far from it.
+const FAR: f32 = 0.984_807_8;
+
+/// Which places are worth a search beside the nearest.
+struct Reach {
+    /// cos and sin of half the angle by which a place may be farther: so much may places be wrong about which part of the
+    /// boundary is nearest.
+    cosine: f32,
+    sine: f32,
+    /// cos of half the angle from which on two places are on different parts.
+    apart: f32,
+    count: usize,
+}
+
+/// 1.5°, for places are up to 2° apart; 6°.
+const CLOSE: Reach = Reach { cosine: 0.999_914_3, sine: 0.013_089_6, apart: 0.998_629_5, count: 3 };
+/// 2.5° and 2.5°.
+const WIDE: Reach = Reach { cosine: 0.999_762, sine: 0.021_814_9, apart: 0.999_762, count: 5 };
 
 #[inline(always)]
 pub(super) fn dot(p: &[f32; 4], q: &[f32; 4]) -> f32 {

@@ -104,18 +104,8 @@ impl Lattice {
         [a, b, c, d, e, f, g, h]
     }
 
-    /// The first nodes of the cells whose coefficients make the value at a rotation with w ≥ 0.
-    #[inline]
-    pub(super) fn cells(&self, q: Quat) -> impl Iterator<Item = usize> + use<> {
-        let first = |q: Quat| {
-            let ([i, j, k], _) = self.cell(mapped(q));
-            (k * self.edge + j) * self.edge + i
-        };
-        [Some(first(q)), (q.w < OVERLAP).then(|| first(-q))].into_iter().flatten()
-    }
-
-    /// For each cell, by its first node, whether any of the coefficients that make its values differ.
-    pub(super) fn differing(&self, one: &[f32], other: &[f32]) -> Vec<bool> {
+    /// For each cell, by its first node, a bit that says whether any of the coefficients that make its values differ.
+    pub(super) fn differing(&self, one: &[f32], other: &[f32]) -> Vec<u64> {
         let mut differ: Vec<bool> =
             one.iter().zip(other).map(|(a, b)| a.to_bits() != b.to_bits()).collect();
         for stride in [1, self.edge, self.edge * self.edge] {
@@ -128,7 +118,10 @@ impl Lattice {
                     || at(node + 2 * stride);
             }
         }
-        differ
+        let bits = |some: &[bool]| {
+            some.iter().enumerate().fold(0, |bits, (at, differ)| bits | u64::from(*differ) << at)
+        };
+        differ.chunks(64).map(bits).collect()
     }
 
     /// The cell of a place, such that a cubic spline has all its coefficients, and the place in it.
@@ -138,7 +131,8 @@ impl Lattice {
         let mut part = [0.0; 3];
         for axis in 0..3 {
             let u = ((x[axis] - self.origin) * self.per_step).clamp(1.0, self.edge as f64 - 3.0);
-            let whole = (u as usize).min(self.edge - 3);
+            // Of what is no number the part is none either, and so is the value.
+            let whole = (u as usize).clamp(1, self.edge - 3);
             cell[axis] = whole;
             part[axis] = u - whole as f64;
         }
@@ -169,12 +163,18 @@ impl Lattice {
     /// blended, so that the function is smooth.
     #[inline]
     pub(super) fn value(&self, spline: &[f32], q: Quat) -> f64 {
-        let here = self.value_at(spline, mapped(q));
+        self.value_in_cells(spline, q).0
+    }
+
+    /// The same, with the first nodes of the cells whose coefficients make it: two near the half turns, else one twice.
+    #[inline]
+    pub(super) fn value_in_cells(&self, spline: &[f32], q: Quat) -> (f64, [usize; 2]) {
+        let (here, cell) = self.value_at(spline, mapped(q));
         if q.w >= OVERLAP {
-            return here;
+            return (here, [cell; 2]);
         }
-        let there = self.value_at(spline, mapped(-q));
-        there + (here - there) * blend(q.w).0
+        let (there, other) = self.value_at(spline, mapped(-q));
+        (there + (here - there) * blend(q.w).0, [cell, other])
     }
 
     /// The same, with its slope by the components of the quaternion.
@@ -197,24 +197,31 @@ impl Lattice {
     }
 
     #[inline(always)]
-    fn value_at(&self, spline: &[f32], x: [f64; 3]) -> f64 {
+    fn value_at(&self, spline: &[f32], x: [f64; 3]) -> (f64, usize) {
         let ([i, j, k], [a, b, c]) = self.cell(x);
-        let (u, v, w) = (weights(a), weights(b), weights(c));
         let edge = self.edge;
-        let mut sum = 0.0;
-        for (n, w) in w.into_iter().enumerate() {
-            let mut plane = 0.0;
-            for (m, v) in v.into_iter().enumerate() {
+        // All rows are asked of memory before any is used: most of the time of a rotation that no cache holds is waiting for
+        // them.
+        let mut rows = [[0.0f32; 4]; 16];
+        for n in 0..4 {
+            for m in 0..4 {
                 let start = ((k + n - 1) * edge + j + m - 1) * edge + i - 1;
-                if let Some([p, q, r, s]) = spline.get(start..start + 4) {
-                    let row = (f64::from(*p) * u[0] + f64::from(*q) * u[1])
-                        + (f64::from(*r) * u[2] + f64::from(*s) * u[3]);
-                    plane += v * row;
+                if let Some(row) = spline.get(start..start + 4).and_then(|row| row.first_chunk()) {
+                    rows[4 * n + m] = *row;
                 }
             }
-            sum += w * plane;
         }
-        sum
+        let (u, v, w) = (weights(a), weights(b), weights(c));
+        let mut sum = 0.0;
+        for n in 0..4 {
+            let mut plane = 0.0;
+            for m in 0..4 {
+                let [p, q, r, s] = rows[4 * n + m].map(f64::from);
+                plane += v[m] * ((p * u[0] + q * u[1]) + (r * u[2] + s * u[3]));
+            }
+            sum += w[n] * plane;
+        }
+        (sum, (k * edge + j) * edge + i)
     }
 
     #[inline(always)]

@@ -210,8 +210,8 @@ pub struct Field {
     counts: Vec<u32>,
     outer: Vec<f32>,
     carved: Option<Vec<f32>>,
-    /// For each cell of the lattice whether a hole matters in it.
-    hollow: Vec<bool>,
+    /// For each cell of the lattice a bit that says whether a hole matters in it.
+    hollow: Vec<u64>,
     boundary: Boundary,
     learned: Learned,
 }
@@ -275,18 +275,20 @@ impl Field {
     #[must_use]
     pub fn state(&self, q: Quat) -> (State, f64) {
         let q = self.chart.inward(q);
-        let distance = self.lattice.value(self.valid(), q);
-        (self.judged(q, distance), distance)
+        let (distance, cells) = self.lattice.value_in_cells(self.valid(), q);
+        (self.judged(q, distance, cells), distance)
     }
 
     #[inline]
-    fn judged(&self, q: Quat, distance: f64) -> State {
+    fn judged(&self, q: Quat, distance: f64, cells: [usize; 2]) -> State {
         if distance >= 0.0 {
             return State::Valid;
         }
         // Elsewhere both splines have the same coefficients.
         let hole = self.carved.is_some()
-            && self.lattice.cells(q).any(|cell| self.hollow.get(cell) == Some(&true))
+            && cells.into_iter().any(|cell| {
+                self.hollow.get(cell / 64).is_some_and(|bits| bits >> (cell % 64) & 1 == 1)
+            })
             && self.lattice.value(&self.outer, q) >= 0.0;
         if hole { State::Unknown } else { State::Invalid }
     }
@@ -312,8 +314,8 @@ impl Field {
     #[must_use]
     pub fn state_with_evidence(&self, q: Quat) -> (State, f64, Evidence) {
         let q = self.chart.inward(q);
-        let distance = self.lattice.value(self.valid(), q);
-        (self.judged(q, distance), distance, self.known(q))
+        let (distance, cells) = self.lattice.value_in_cells(self.valid(), q);
+        (self.judged(q, distance, cells), distance, self.known(q))
     }
 
     fn known(&self, q: Quat) -> Evidence {
@@ -393,9 +395,9 @@ impl Field {
     #[must_use]
     pub fn answer(&self, q: Quat) -> Answer {
         let inward = self.chart.inward(q);
-        let distance = self.lattice.value(self.valid(), inward);
+        let (distance, cells) = self.lattice.value_in_cells(self.valid(), inward);
         Answer {
-            state: self.judged(inward, distance),
+            state: self.judged(inward, distance, cells),
             distance,
             nearest: self.projected(q, inward, distance),
             evidence: self.known(inward),

@@ -134,7 +134,7 @@ fn approach(surface: &impl Surface, from: Quat, start: Quat) -> Option<Quat> {
 pub(super) fn project(
     surface: &impl Surface,
     from: Quat,
-    starts: [Option<Quat>; 3],
+    starts: impl IntoIterator<Item = Option<Quat>>,
     anchor: impl FnOnce() -> Option<Quat>,
 ) -> Option<(Quat, bool)> {
     let mut best: Option<(Quat, bool)> = None;

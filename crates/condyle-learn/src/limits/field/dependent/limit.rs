@@ -4,6 +4,7 @@ use super::super::super::{Cloud, SPACING};
 use super::super::{About, Ground, LearnedLimit, Settings, learn};
 use super::{Pairs, layer, made};
 use condyle_diagnostics::Error;
+use condyle_model::CoordinateKind;
 use condyle_model::limit::field::dependent::{Dependence, DependenceSettings, Drivers};
 use condyle_model::limit::field::snapped;
 use std::sync::Arc;
@@ -20,6 +21,8 @@ pub struct Asked {
     pub name: String,
     /// Of a rotation, the segment in which it is seen.
     pub reference: Option<String>,
+    /// What a coordinate measures; an angle, or a rotation in space, if not given.
+    pub kind: Option<CoordinateKind>,
     /// How the dependence is learned; what is usual for the driver if not given.
     pub settings: Option<DependenceSettings>,
     /// How the limit without its driver is learned.
@@ -51,6 +54,7 @@ pub struct Asked {
 ///     about: About { child: "forearm".into(), ..About::default() },
 ///     name: "shoulder".into(),
 ///     reference: None,
+///     kind: None,
 ///     settings: None,
 ///     whole: Settings { nodes: 32, ..Settings::default() },
 ///     curves: None,
@@ -95,7 +99,12 @@ pub fn limit(pairs: &Pairs, asked: &Asked) -> Result<(LearnedLimit, Vec<f64>), E
         return Err(Error::new("given/settings", message));
     }
     let (name, reference) = (asked.name.clone(), asked.reference.clone());
-    let mut dependence = Dependence { name, reference, drivers, settings, known: None };
+    let kind = match (asked.kind, &drivers) {
+        (Some(CoordinateKind::Scale), Drivers::Scalars(_)) => CoordinateKind::Other,
+        (Some(kind), Drivers::Scalars(_)) => kind,
+        _ => drivers.usual_kind(),
+    };
+    let mut dependence = Dependence { name, reference, kind, drivers, settings, known: None };
     let parts = parts(&pairs.takes, last, asked.curves.is_some());
     let least = asked.curves.unwrap_or(0.0);
     let (known, distances) = layer(&ground, &dependence, &parts, asked.curves.is_some(), least);

@@ -1,5 +1,6 @@
 //! What a limit depends on: the values of a driver, one for each sample, and how they are used.
 
+use crate::CoordinateKind;
 use condyle_math::Quat;
 
 /// A value of what a limit depends on.
@@ -34,6 +35,15 @@ impl Drivers {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// What they measure if nothing else is said: an angle, or a rotation in space.
+    #[must_use]
+    pub fn usual_kind(&self) -> CoordinateKind {
+        match self {
+            Self::Scalars(_) => CoordinateKind::Rotation,
+            Self::Rotations(_) => CoordinateKind::Orientation,
+        }
     }
 
     /// The driver at a sample.
@@ -111,6 +121,8 @@ pub struct Dependence {
     pub name: String,
     /// Of a rotation, the segment in which it is seen; `None` for the laboratory, or what was not said.
     pub reference: Option<String>,
+    /// What a coordinate measures, and so its unit; of a rotation an orientation.
+    pub kind: CoordinateKind,
     /// The driver at each of the limit's samples.
     pub drivers: Drivers,
     /// How it is learned.
