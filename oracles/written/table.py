@@ -16,7 +16,7 @@ import subprocess
 import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-MODELS = ["arms", "human", "knee", "knee-three-rotations", "legs", "octopus", "shoulder", "shoulder-shao2003", "spine",
+MODELS = ["arms", "human", "knee", "knee-pronost2010", "knee-three-rotations", "legs", "octopus", "shoulder", "shoulder-shao2003", "spine",
           "spine-shao2003"]
 # Format, program, variable, script, name of the answers.
 PEERS = [("osim", "OpenSim", "OPENSIM_PYTHON", "osim.py", "opensim"),

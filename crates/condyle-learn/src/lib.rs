@@ -2,6 +2,7 @@
 //!
 //! | module | what |
 //! | --- | --- |
+//! | [`arms`] | joints with fewer and fewer free coordinates, to be compared with a learned one |
 //! | [`calibration`] | where joints are: rigid clusters, functional axes and centres, a free joint from a standing trial |
 //! | [`coupling`] | laws that couple coordinates, from frames of trials |
 //! | [`frames`] | orientations of segments from markers, by a recipe |
@@ -9,6 +10,7 @@
 //! | [`limits`] | limits of joints from orientations |
 //! | [`study`] | virtual people whose knees are known, for the study of Pronost et al. 2010 |
 
+pub mod arms;
 pub mod calibration;
 pub mod coupling;
 pub mod frames;

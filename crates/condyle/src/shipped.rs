@@ -28,6 +28,7 @@ const MODELS: &[(&str, &str)] = &[
     ("arms", include_str!("../models/arms.toml")),
     ("human", include_str!("../models/human.toml")),
     ("knee", include_str!("../models/knee.toml")),
+    ("knee-pronost2010", include_str!("../models/knee-pronost2010.toml")),
     ("knee-three-rotations", include_str!("../models/knee-three-rotations.toml")),
     ("legs", include_str!("../models/legs.toml")),
     ("octopus", include_str!("../models/octopus.toml")),
@@ -51,6 +52,7 @@ const PARTS: &[(&str, &str)] = &[
     ("parts/human-limits.toml", include_str!("../models/parts/human-limits.toml")),
     ("parts/human-markers.toml", include_str!("../models/parts/human-markers.toml")),
     ("parts/knee-human.toml", include_str!("../models/parts/knee-human.toml")),
+    ("parts/knee-yamaguchi1989.toml", include_str!("../models/parts/knee-yamaguchi1989.toml")),
     ("parts/leg-bones.toml", include_str!("../models/parts/leg-bones.toml")),
     ("parts/limit-shoulder.toml", include_str!("../models/parts/limit-shoulder.toml")),
     (

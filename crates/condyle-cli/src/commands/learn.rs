@@ -1,5 +1,6 @@
 //! `condyle learn`: models from recordings: limits of joints, and laws that couple coordinates.
 
+mod compare;
 mod coupling;
 mod joint;
 mod study;
@@ -34,6 +35,8 @@ enum What {
     Limits(Box<Limits>),
     /// Learn how coordinates follow others, from trials.
     Coupling(Box<coupling::Coupling>),
+    /// Compare a learned joint with others on trials that are left out.
+    Compare(Box<compare::Compare>),
     /// Make a model with a free joint from a standing trial.
     Joint(Box<joint::Joint>),
     /// Remake the study of Pronost et al. 2010 with virtual people whose knees are known.
@@ -139,6 +142,7 @@ impl Learn {
         match self.what {
             What::Limits(limits) => limits.run(),
             What::Coupling(coupling) => coupling.run(),
+            What::Compare(compare) => compare.run(),
             What::Joint(joint) => joint.run(),
             What::Study(study) => study.run(),
         }

@@ -126,7 +126,7 @@ fn one_trial_is_told() {
 }
 
 /// Seven markers of a leg in millimetres, as a person stands.
-fn standing() -> String {
+pub(crate) fn standing() -> String {
     let markers = [
         ("RGT", "20\t900\t170"),
         ("RLFE", "10\t480\t140"),

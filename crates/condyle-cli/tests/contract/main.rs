@@ -5,6 +5,7 @@ mod command;
 
 mod batch;
 mod bench;
+mod compare;
 mod constrain;
 mod convert;
 mod coupling;

@@ -3,6 +3,7 @@
 //! | module | what |
 //! | --- | --- |
 //! | `take` | the rotations that one recording shows: by a recipe, by a model and a joint, or as they stand |
+//! | [`arms`] | joints compared on trials that were left out |
 //! | `coupling` | frames of trials by path, tracked where they hold markers |
 //! | `limit` | a limit from takes: thinned, with a layer from takes that were left out |
 //! | `given` | what a limit depends on, and limits that depend on another joint |
@@ -11,6 +12,7 @@
 //! | `mobility` | a learned limit in numbers, and two compared |
 //! | [`study`] | the study of Pronost et al. 2010 with virtual people |
 
+pub mod arms;
 mod coupling;
 mod engine;
 mod given;

@@ -7,6 +7,7 @@ mod hands;
 mod human;
 mod knee;
 mod lanes;
+mod learned_knees;
 mod legs;
 mod limb;
 mod limits;

@@ -77,12 +77,12 @@ pub(super) struct Coupling {
     apply: Option<PathBuf>,
 }
 
-fn basis(text: &str) -> Result<Basis, String> {
+pub(super) fn basis(text: &str) -> Result<Basis, String> {
     let help = "give linear, polynomial:2 to polynomial:6, or spline:3 to spline:20";
     Basis::named(text).ok_or_else(|| help.to_owned())
 }
 
-fn ridge(text: &str) -> Result<f64, String> {
+pub(super) fn ridge(text: &str) -> Result<f64, String> {
     let ridge = text.parse().ok().filter(|r: &f64| r.is_finite() && *r >= 0.0);
     ridge.ok_or_else(|| "give a number of 0 or more".to_owned())
 }

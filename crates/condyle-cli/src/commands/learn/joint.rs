@@ -70,7 +70,7 @@ pub(super) struct Joint {
 /// Markers of a person who stands move by less, in metres.
 const STILL: f64 = 0.03;
 
-fn segment(text: &str) -> Result<(String, Vec<String>), String> {
+pub(super) fn segment(text: &str) -> Result<(String, Vec<String>), String> {
     let (name, markers) = text.split_once('=').ok_or("give SEGMENT=M1,M2,...")?;
     let markers: Vec<String> =
         markers.split(',').map(|m| m.trim().to_owned()).filter(|m| !m.is_empty()).collect();
