@@ -4,8 +4,8 @@ import { fileURLToPath } from "node:url";
 
 export async function evaluator() {
   const packed = fileURLToPath(new URL("../dist/assets/core.wasm.lzma", import.meta.url));
-  const bytes = execFileSync("xz", ["--format=lzma", "--decompress", "--stdout", packed], { maxBuffer: 1 << 28 });
-  const { instance } = await WebAssembly.instantiate(bytes);
+  const module = execFileSync("xz", ["--format=lzma", "--decompress", "--stdout", packed], { maxBuffer: 1 << 28 });
+  const { instance } = await WebAssembly.instantiate(module);
   const core = instance.exports;
   const bytes = () => new Uint8Array(core.memory.buffer);
   const answer = () => new TextDecoder().decode(bytes().slice(core.text_at(), core.text_at() + core.text_length()));

@@ -79,8 +79,14 @@ fn marker_errors_on_trials_left_out_are_those_of_opensim() {
             for arm in Arm::COMPARED {
                 let theirs = &answer["errors"][trial][arm.name()];
                 let ours = one.of(arm).unwrap();
-                assert_eq!(ours.frames() as u64, theirs["frames"].as_u64().unwrap(), "{trial} {arm:?}");
-                let [mean, theirs_mean] = [1e3 * ours.mean(), number(&theirs["rms_mm"])];
+                // Of some trials the first seconds are kept.
+                let counted: Vec<f64> =
+                    ours.rms.iter().copied().filter(|rms| rms.is_finite()).collect();
+                let frames = theirs["frames"].as_u64().unwrap() as usize;
+                let all = answer["seconds"].is_null();
+                assert!(frames == counted.len() || !all && frames > 100, "{trial} {arm:?}");
+                let mean = 1e3 * counted[..frames].iter().sum::<f64>() / frames as f64;
+                let theirs_mean = number(&theirs["rms_mm"]);
                 println!("{name} {trial} {}: {mean:.4} mm, OpenSim {theirs_mean:.4} mm", arm.name());
                 // Both minimise the sum of squares; the mean of its root differs by where they stop.
                 let within = TOLERANCE * theirs_mean + 1e-3;

@@ -102,7 +102,7 @@ fn solved(a: [[f64; 3]; 3], b: [f64; 3]) -> Option<[f64; 3]> {
             let sum: f64 = (0..j).map(|k| l[i][k] * l[j][k]).sum();
             if i == j {
                 let pivot: f64 = a[i][i] - sum;
-                if pivot.is_nan() || pivot <= 1e-12 * a[i][i].abs() {
+                if pivot <= 1e-12 * a[i][i].abs() {
                     return None;
                 }
                 l[i][i] = pivot.sqrt();
