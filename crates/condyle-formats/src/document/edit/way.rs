@@ -3,7 +3,7 @@
 use super::change::number;
 use super::expression::Affine;
 use super::leaf::{Expression, Found, Keyed, Leaf, Piece};
-use super::{Editable, Source, Step, line_and_column, shown};
+use super::{Editable, Source, Step, shown};
 use crate::document::Document;
 use crate::document::texts::{Context, Spot};
 use crate::document::tree::ends;
@@ -160,12 +160,18 @@ pub(super) fn editables(
         sources,
         sources_of: sources_of.collect(),
         ends: sources.iter().map(|source| ends(&source.text)).collect(),
+        lines: sources.iter().map(|source| line_starts(&source.text)).collect(),
         at_spot,
         pieces: HashMap::new(),
         document,
         found: &found,
     };
     found.leaves.iter().filter_map(|leaf| maker.editable(leaf)).collect()
+}
+
+fn line_starts(text: &str) -> Vec<usize> {
+    let breaks = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at + 1);
+    std::iter::once(0).chain(breaks).collect()
 }
 
 fn plain_spot(spot: Spot) -> Spot {
@@ -179,6 +185,8 @@ struct Maker<'a> {
     sources_of: Vec<usize>,
     /// Where each value ends, by where it begins, in each source.
     ends: Vec<HashMap<usize, usize>>,
+    /// Where each line of each source begins.
+    lines: Vec<Vec<usize>>,
     /// How many numbers come from each place.
     at_spot: HashMap<Spot, usize>,
     /// The pieces of keys that were rendered.
@@ -203,11 +211,21 @@ impl Maker<'_> {
         self.source(spot)?.1.text.get(self.range(spot)?)
     }
 
+    /// Line and column of a spot, counted from 1.
+    fn line_and_column(&self, spot: Spot) -> (usize, usize) {
+        let Some((number, source)) = self.source(spot) else { return (0, 0) };
+        let starts = self.lines.get(number).map_or(&[][..], Vec::as_slice);
+        let line = starts.partition_point(|&start| start <= spot.start);
+        let from = starts.get(line.saturating_sub(1)).copied().unwrap_or(0);
+        let before = source.text.get(from..spot.start).unwrap_or_default();
+        (line, before.chars().count() + 1)
+    }
+
     /// `file:line` of a spot.
     fn place(&self, spot: Spot) -> String {
         let Some((_, source)) = self.source(spot) else { return self.title.to_owned() };
         let name = if source.name.is_empty() { self.title } else { &source.name };
-        format!("{name}:{}", line_and_column(&source.text, spot.start).0)
+        format!("{name}:{}", self.line_and_column(spot).0)
     }
 
     fn owned(&self, spot: Spot) -> bool {
@@ -216,7 +234,7 @@ impl Maker<'_> {
 
     fn editable(&mut self, leaf: &Leaf) -> Option<Editable> {
         let (_, source) = self.source(leaf.spot)?;
-        let (line, column) = line_and_column(&source.text, leaf.spot.start);
+        let (line, column) = self.line_and_column(leaf.spot);
         let file = source.name.clone();
         let written = self.written(leaf.spot)?.to_owned();
         let origin = match (&leaf.context, &leaf.expression) {
