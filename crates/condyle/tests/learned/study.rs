@@ -102,3 +102,23 @@ fn threads_change_nothing() {
     assert_eq!(one, of(2, 1));
     assert_ne!(one, of(1, 2));
 }
+
+/// OpenSim's InverseKinematicsTool with the `.osim` of each knee, on the first gait that no law has seen, has the marker errors that
+/// the study tells (`oracles/study/`), as far as the digits of the files go.
+#[test]
+fn opensim_leaves_what_the_study_says() {
+    let text = include_str!("../../../../oracles/study/answers.json");
+    let answers: serde_json::Value = serde_json::from_str(text).expect("JSON");
+    let studied = quick(1, |_| {});
+    for (skin, part) in [(Skin::Rigid, "rigid"), (Skin::Moving, "moving")] {
+        let run = studied.of(0, skin).unwrap();
+        for followed in run.unseen.iter().filter(|f| f.gait) {
+            let name = followed.knee.replace(' ', "-");
+            let theirs = &answers[part][&name];
+            let frames = theirs["frames"].as_f64().expect("frames");
+            let [theirs, ours] =
+                [theirs["rms_mm"].as_f64().expect("a number"), 1e3 * followed.sums[0] / frames];
+            assert!((theirs / ours - 1.0).abs() < 1e-5, "{part} {name}: {ours}, {theirs}");
+        }
+    }
+}

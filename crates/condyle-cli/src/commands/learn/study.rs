@@ -1,13 +1,13 @@
 //! `condyle learn study`: the study of Pronost et al. 2010 with virtual people.
 
 use crate::commands::Outcome;
-use crate::failure::Failure;
+use crate::failure::{Failure, warn_about};
 use crate::output;
 use crate::progress::frames_bar;
 use clap::Args;
-use condyle::formats::trc;
+use condyle::formats::{opensim, trc};
 use condyle::learn::study::{Kind, Person, Skin};
-use condyle::learning::study::{Plan, figure, report, study, tables};
+use condyle::learning::study::{Plan, Studied, figure, report, study, tables};
 use std::path::{Path, PathBuf};
 
 /// Remake the study of Pronost, Sandholm & Thalmann 2010 with six virtual people whose knees are known, with and without skin that moves.
@@ -37,7 +37,8 @@ pub(super) struct Study {
     /// Fewer trials and every eighth frame of crouches: seconds instead of minutes, and wider intervals.
     #[arg(long)]
     quick: bool,
-    /// Write the recordings, too, as `trials/*.trc`: the standing trial and all others of each person.
+    /// Write the recordings, too, as `trials/*.trc`, the standing trial and all others of each person, not filtered; and every knee as
+    /// `models/*.osim`.
     #[arg(long)]
     trials: bool,
 }
@@ -86,9 +87,33 @@ impl Study {
             for person in &studied.people {
                 write_trials(&self.output.join("trials"), &plan, person)?;
             }
+            self.write_models(&studied)?;
         }
         output::print(format!("{}\n", self.output.join("study.md").display()).as_bytes())?;
         Ok(Outcome::Done)
+    }
+}
+
+impl Study {
+    /// Every knee of every person: `s1_moving_gait_learned.osim`.
+    fn write_models(&self, studied: &Studied) -> Result<(), Failure> {
+        for run in &studied.runs {
+            let Some(person) = studied.people.get(run.person) else { continue };
+            for (gait, motion) in [(true, "gait"), (false, "crouch")] {
+                for (knee, model) in studied.models(run, gait)? {
+                    let knee: Vec<&str> = knee.split([' ', ',', '\'']).collect();
+                    let knee: Vec<&str> =
+                        knee.into_iter().filter(|word| !word.is_empty()).collect();
+                    let skin = if run.skin == Skin::Rigid { "rigid" } else { "moving" };
+                    let name = format!("{}_{skin}_{motion}_{}.osim", person.name, knee.join("-"));
+                    let path = self.output.join("models").join(name);
+                    let written = opensim::write(&model);
+                    warn_about(&path, &written.warnings);
+                    output::write(&path, written.value.as_bytes())?;
+                }
+            }
+        }
+        Ok(())
     }
 }
 

@@ -50,6 +50,18 @@ pub(super) const SCALED: [&str; 3] =
 /// A knee with its name and how many of its coordinates are free.
 type Knee = (String, usize, Model);
 
+impl super::Studied {
+    /// The models of all knees that are compared on a run's gaits or crouches, by their names in [`Followed::knee`].
+    ///
+    /// # Errors
+    /// None are expected of a study that came out.
+    pub fn models(&self, run: &Run, gait: bool) -> Result<Vec<(String, Model)>, Error> {
+        let leg = Leg::of(&run.free, "knee_r")?;
+        let knees = knees(&self.runs, run, &leg, usize::from(!gait))?;
+        Ok(knees.into_iter().map(|(name, _, model)| (name, model)).collect())
+    }
+}
+
 /// All knees of a person for one kind of motion, 0 gait, 1 crouch.
 fn knees(runs: &[Run], run: &Run, leg: &Leg, motion: usize) -> Result<Vec<Knee>, Error> {
     let [own, other] = [&run.learned[motion].centre, &run.learned[1 - motion].centre];
