@@ -16,8 +16,11 @@
 mod base64;
 mod bundle;
 mod export;
+#[cfg(feature = "server")]
+pub mod server;
 mod session;
 
 pub use bundle::{Asset, PAGE, asset, assets};
+pub use condyle_wasm::Shown;
 pub use export::exported;
-pub use session::{Mode, Session, Shown};
+pub use session::{Mode, Session, shown};

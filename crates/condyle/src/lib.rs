@@ -264,9 +264,12 @@
 //! | [`check`] | findings about a model, or about a motion of it |
 //! | [`formats`], [`open`], [`encode`] | bytes to values and back, by path or not |
 //! | [`shipped`], [`scene`] | models that come along, animated scenes |
+//! | [`authoring`] | model documents edited in their files |
 //!
-//! The last two rows are features: without them nothing that reads a file is compiled.
+//! The last three rows are features: without them nothing that reads a file is compiled.
 
+#[cfg(feature = "authoring")]
+pub mod authoring;
 pub mod constraining;
 #[cfg(feature = "formats")]
 pub mod encode;
@@ -317,3 +320,8 @@ pub use figure::{Figure, Part};
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 pub struct Readme;
+
+/// The manual of editing, run as a test.
+#[cfg(all(doctest, feature = "authoring"))]
+#[doc = include_str!("../../../docs/authoring.md")]
+pub struct AuthoringManual;

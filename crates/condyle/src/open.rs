@@ -366,7 +366,7 @@ fn with_tasks(path: &Path, mut read: Read<Content>) -> Result<Read<Content>, Ope
 
 /// The text that a file includes: another file, from its own place, or else a shipped model by its
 /// name or a part of one.
-fn included(from: &Path, name: &str) -> Result<String, String> {
+pub(crate) fn included(from: &Path, name: &str) -> Result<String, String> {
     let path = beside(from, name);
     #[cfg(feature = "document")]
     if !path.exists()

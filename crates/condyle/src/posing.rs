@@ -28,7 +28,9 @@ use condyle_diagnostics::{Diagnostic, Error, did_you_mean};
 use condyle_formats::document::goals::{GoalList, Named, NamedAim, NamedPoint};
 use condyle_math::{Quat, Vec3};
 use condyle_model::{CoordinateId, CoordinateKind, Mode, Model, Pose, Program, SegmentId};
-pub use condyle_track::goal::{Aim, Anchor, Answer, By, Goal, Goals, MET, Miss, Rest, Side, solve};
+pub use condyle_track::goal::{
+    Aim, Anchor, Answer, By, Goal, Goals, MET, Miss, Rest, Side, follow, solve,
+};
 
 /// A pose, and what was asked of it.
 #[derive(Clone, Debug)]

@@ -187,8 +187,11 @@ fn with(name: &str, note: &mut dyn FnMut(&str)) -> Result<Read<Document>, OpenEr
 }
 
 /// The text of an included file: another shipped model, or a part.
+///
+/// # Errors
+/// A sentence where none has that name.
 #[cfg(feature = "document")]
-fn included(file: &str) -> Result<&'static str, String> {
+pub fn included(file: &str) -> Result<&'static str, String> {
     includable(file).ok_or_else(|| format!("no text `{file}` is shipped"))
 }
 

@@ -1,14 +1,17 @@
 //! The checks, one file each, in the order in which CI runs them: quick ones first.
 
 mod architecture;
+mod browser;
 mod clippy;
 mod deny;
 mod doc;
+mod evaluator;
 mod exchange;
 mod fmt;
 mod fuzz;
 mod instructions;
 mod outside;
+mod page;
 mod test;
 
 use crate::outcome::{Context, Outcome};
@@ -49,6 +52,13 @@ pub(crate) const CHECKS: &[Check] = &[
         what: "what a user builds: features, a program, the browser",
         run: outside::run,
     },
+    Check { name: "page", what: "the built page is of its sources, and light", run: page::run },
+    Check {
+        name: "evaluator",
+        what: "the page's WebAssembly poses as the library does",
+        run: evaluator::run,
+    },
+    Check { name: "browser", what: "the page in a real browser", run: browser::run },
     Check { name: "fuzz", what: "the fuzz targets build and take their seeds", run: fuzz::run },
     Check {
         name: "instructions",

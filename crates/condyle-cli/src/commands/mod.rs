@@ -6,6 +6,7 @@ mod constrain;
 mod convert;
 mod demo;
 mod diff;
+mod export;
 mod fk;
 mod info;
 mod learn;
@@ -15,6 +16,7 @@ mod render;
 mod scale;
 mod track;
 mod upkeep;
+mod view;
 
 use crate::failure::Failure;
 use clap::builder::PossibleValuesParser;
@@ -93,6 +95,10 @@ enum Command {
     Pose(pose::Pose),
     /// Draw a model, or frames of its motion, as a PNG.
     Render(render::Render),
+    /// Show a model and its motions in the browser, and edit it there.
+    View(view::View),
+    /// Write what is seen as one file to send: a page with a model and its motions.
+    Export(export::Export),
     /// Compute the motion of a model that follows recorded markers.
     Track(track::Track),
     /// Scale a model to the person of a static trial.
@@ -196,6 +202,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
         Command::Fk(command) => command.run(),
         Command::Pose(command) => command.run(),
         Command::Render(command) => command.run(),
+        Command::View(command) => command.run(),
+        Command::Export(command) => command.run(),
         Command::Track(command) => command.run(),
         Command::Scale(command) => command.run(),
         Command::Learn(command) => command.run(),

@@ -11,6 +11,7 @@ mod convert;
 mod coupling;
 mod diff;
 mod document;
+mod export;
 mod fk;
 mod given;
 mod info;

@@ -14,6 +14,7 @@
 //! available here, too. [`setup`] is how recordings are tracked, [`names`] what their labels are called
 //! in models, [`goals`] what a pose should do, [`recipe`] which markers give the orientation of a segment,
 //! [`limit`] which rotations of a segment in another are possible, [`law`] how coordinates follow others. [`kind()`] tells the kind of a text.
+//! `edit` (a feature) changes single numbers of a model's text.
 //!
 //! Reading reports everything that is wrong at once, each with its line and column. Its codes are
 //! `document/...` for what all kinds share, such as a missing key or a wrong type, and `KIND/...`
@@ -23,6 +24,8 @@
 //! A new kind needs a [`Kind`], a folder beside [`model`] with its `Form`, and a function that
 //! reads its fields with the `Reader` from `read_kind`.
 
+#[cfg(feature = "edit")]
+pub mod edit;
 mod fields;
 mod findings;
 mod function;

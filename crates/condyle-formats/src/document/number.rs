@@ -36,7 +36,7 @@ impl Reader<'_> {
     }
 
     /// A sum of products, such as `-$thigh - 0.5 * $height`, with spaces around each sign.
-    fn sum(&mut self, text: &str, spot: Spot) -> Option<f64> {
+    pub(super) fn sum(&mut self, text: &str, spot: Spot) -> Option<f64> {
         let mut sum = Some(0.0);
         let mut sign = 1.0;
         let mut rest = text.trim();

@@ -213,3 +213,37 @@ fn convert(file: u32, value: DeValue<'_>, spot: Spot) -> Node {
     };
     Node { value, spot }
 }
+
+/// Where each value of a text ends, by where it begins.
+#[cfg(feature = "edit")]
+pub(super) fn ends(text: &str) -> std::collections::HashMap<usize, usize> {
+    let mut ends = std::collections::HashMap::new();
+    if too_deep(text).is_some() {
+        return ends;
+    }
+    let (table, _) = DeTable::parse_recoverable(text);
+    let mut open: Vec<&toml::Spanned<DeValue<'_>>> =
+        table.get_ref().iter().map(|(_, v)| v).collect();
+    while let Some(value) = open.pop() {
+        ends.insert(value.span().start, value.span().end);
+        match value.get_ref() {
+            DeValue::Array(list) => open.extend(list.iter()),
+            DeValue::Table(table) => open.extend(table.iter().map(|(_, value)| value)),
+            _ => {}
+        }
+    }
+    ends
+}
+
+/// The table at a path of keys, if it is there.
+#[cfg(feature = "edit")]
+pub(super) fn own_tables<'t, 'v>(top: &'t DeTable<'v>, path: &[String]) -> Option<&'t DeTable<'v>> {
+    let mut here = top;
+    for key in path {
+        here = match here.get(key.as_str())?.get_ref() {
+            DeValue::Table(inner) => inner,
+            _ => return None,
+        };
+    }
+    Some(here)
+}

@@ -38,6 +38,8 @@ pub struct Program {
     pub(super) behind: Vec<Behind>,
     pub(super) code: Code,
     pub(super) plan: DerivativePlan,
+    /// For each component the numbers that it gives: a constant, or where it is.
+    pub(super) outputs: Vec<Vec<Result<f64, Number>>>,
 }
 
 /// A component that limits something, in a compiled model.
@@ -86,6 +88,20 @@ impl Program {
     /// for an orientation.
     pub fn stored_len(&self) -> usize {
         self.stored
+    }
+
+    /// The numbers that a component gives in an evaluated pose, in the order of its outputs: those of laws that
+    /// compute scalars or an orientation, or let them through. None of one that nothing needs.
+    pub fn outputs<'p>(
+        &'p self,
+        pose: &'p Pose,
+        component: ComponentId,
+    ) -> impl Iterator<Item = f64> + 'p {
+        let own = self.outputs.get(component.index()).map_or(&[][..], |own| own);
+        own.iter().filter_map(|of| match of {
+            Ok(constant) => Some(*constant),
+            Err(number) => pose.scalars.get(number.index()).copied(),
+        })
     }
 
     /// The number of directions (tangents) of all coordinates.

@@ -19,6 +19,9 @@ const NEAR: Stopping =
 /// The last one goes on until steps are rounding.
 pub(super) const CLOSE: Stopping =
     Stopping { tolerance: 1e-21, floor: 1e-28, feasibility: 1e-10, iterations: 200, trust: 0.5 };
+/// One that follows what is dragged: to a tenth of a millimetre, within the time between two pictures.
+const FOLLOWING: Stopping =
+    Stopping { tolerance: 1e-9, floor: 1e-12, feasibility: 1e-9, iterations: 24, trust: 0.5 };
 /// How much less rest counts where goals cannot be met.
 const LITTLE: f64 = 1e-4;
 /// The stiffness about a pose that is kept where nothing else says anything.
@@ -110,6 +113,43 @@ pub fn solve(model: &Model, goals: &Goals) -> Answer {
     end.answer.starts = starts;
     end.answer.iterations = iterations;
     end.answer
+}
+
+/// The legal pose to which one descent comes from `start`, goals without a weight as squares of weight 1: for who moves a
+/// goal a little at a time, as one that drags a hand does.
+///
+/// It is one descent where [`solve`] has thirteen and more, so that it answers in milliseconds; it misses a goal by what
+/// nearness to rest takes of it, a fraction of a millimetre, and stays on its side of what it cannot pass.
+/// `None` where nothing can be evaluated.
+///
+/// # Panics
+/// As [`solve`]; if `start` has not as many numbers as the model stores.
+///
+/// ```
+/// use condyle_math::Vec3;
+/// use condyle_model::ModelBuilder;
+/// use condyle_track::goal::{Aim, Goal, Goals, follow};
+/// let mut b = ModelBuilder::new("arm");
+/// let forearm = b.segment("forearm", None);
+/// b.hinge("elbow", forearm, "flexion", Vec3::Z);
+/// let model = b.build().unwrap();
+/// let wrist = (Some(forearm), Vec3::new(0.25, 0.0, 0.0));
+/// let aim = Aim::Point { point: wrist, at: (None, Vec3::new(0.15, 0.20, 0.0)) };
+/// let mut goals = Goals::of(&model);
+/// goals.goals.push(Goal { aim, weight: None });
+/// let answer = follow(&model, &goals, &[0.8]).unwrap();
+/// assert!((answer.coordinates[0] - f64::atan2(0.20, 0.15)).abs() < 1e-4);
+/// ```
+pub fn follow(model: &Model, goals: &Goals, start: &[f64]) -> Option<Answer> {
+    let question = Question::new(model, goals);
+    let stage = Stage {
+        exact: Some(1.0),
+        weighted: 1.0,
+        rest: 1.0,
+        near: goals.rest.clone(),
+        curved: false,
+    };
+    descend(&question, stage, start, &FOLLOWING).map(|end| end.answer)
 }
 
 /// Whether an answer has loops closed where another has not, or misses the goals by less.

@@ -1,6 +1,7 @@
 //! A posed figure that is drawn.
 
 use super::focus::Chosen;
+use super::limits::Reaches;
 use super::screw::twists;
 use condyle_math::{Affine, Vec3};
 use condyle_model::{CoordinateId, Jacobian, Model, Pose, Program, SegmentId};
@@ -19,6 +20,8 @@ pub(super) struct Figure<'a> {
     pub(super) chosen: Option<&'a Chosen>,
     /// Whether the rest is pale.
     pub(super) highlight: bool,
+    /// What learned limits reach, worked out once.
+    pub(super) reaches: &'a Reaches,
     /// A length that suits signs beside bones, in metres: a share of what the picture shows.
     pub(super) unit: f64,
 }
@@ -101,6 +104,7 @@ pub(super) mod tests {
             surfaces: &surfaces,
             chosen: None,
             highlight: false,
+            reaches: &Reaches::default(),
             unit: 0.05,
         });
     }

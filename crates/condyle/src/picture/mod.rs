@@ -23,10 +23,13 @@ mod marks;
 mod screw;
 mod sheet;
 mod show;
+mod signs;
 mod sweep;
 mod view;
 
 pub use focus::Focus;
+pub use limits::Reaches;
 pub use sheet::{Posed, Sheet, draw};
 pub use show::Show;
+pub use signs::signs;
 pub use view::View;

@@ -68,7 +68,7 @@ pub fn draw(model: &Model, sheet: &Sheet) -> Result<Canvas, Error> {
     let chosen = sheet.focus.resolve(model)?;
     let layout = Layout::of(sheet)?;
     let program = Program::compile(model);
-    let surfaces = crate::Figure::new(model);
+    let (surfaces, reaches) = (crate::Figure::new(model), limits::Reaches::default());
     let (mut pose, mut jacobian) = (Pose::new(&program), Jacobian::new(&program));
     let mut page = Canvas::new(sheet.size[0], sheet.size[1], palette::PAGE);
     let mut evaluate = |stored: &[f64], draw: &mut dyn FnMut(&Figure)| {
@@ -83,6 +83,7 @@ pub fn draw(model: &Model, sheet: &Sheet) -> Result<Canvas, Error> {
             surfaces: &surfaces,
             chosen: chosen.as_ref(),
             highlight: sheet.focus.highlight,
+            reaches: &reaches,
             unit: 0.0,
         };
         draw(&figure);
@@ -130,7 +131,7 @@ fn rendered(picture: &Picture) -> Canvas {
 }
 
 /// What is shown of a posed figure.
-fn scene(figure: &Figure, show: &[Show]) -> Scene {
+pub(super) fn scene(figure: &Figure, show: &[Show]) -> Scene {
     let mut scene = Scene::default();
     let shows = |kind: Show| show.contains(&kind);
     if shows(Show::Bones) || shows(Show::Skin) {

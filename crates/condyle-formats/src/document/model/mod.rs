@@ -184,3 +184,23 @@ pub fn read_with(
     })?;
     Ok(read.map(|(model, places)| Document { model, text: text.to_owned(), places }))
 }
+
+/// Reads a model document together with the places of its numbers.
+#[cfg(feature = "edit")]
+pub(super) fn read_edited(
+    text: &str,
+    include: &mut dyn FnMut(&str) -> Result<String, String>,
+) -> Result<(Document, super::edit::Found), Error> {
+    let read = read_kind(&FORM, text, include, |reader, top| {
+        let (laws, fields) = (Registry::default(), HashMap::new());
+        let mut reader = ModelReader { reader, laws, fields };
+        let draft = reader.draft(top);
+        let found = match reader.reader.texts.failed() {
+            true => super::edit::Found::default(),
+            false => super::edit::gather(&mut reader.reader, top),
+        };
+        resolve::build(draft, reader.reader.texts).map(|built| (built, found))
+    })?;
+    let ((model, places), found) = read.value;
+    Ok((Document { model, text: text.to_owned(), places }, found))
+}

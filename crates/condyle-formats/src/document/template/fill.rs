@@ -41,7 +41,7 @@ fn pieces(text: &str) -> Vec<Piece<'_>> {
 }
 
 /// The parameters and constants that a string names as `$name`.
-fn dollars(text: &str) -> impl Iterator<Item = &str> {
+pub(in super::super) fn dollars(text: &str) -> impl Iterator<Item = &str> {
     let letter = |c: char| c.is_alphanumeric() || c == '_';
     text.split('$')
         .skip(1)

@@ -14,6 +14,8 @@
 mod fill;
 mod join;
 
+#[cfg(feature = "edit")]
+pub(super) use fill::dollars;
 pub(super) use fill::shallow;
 
 use super::fields::{Fields, Reader};

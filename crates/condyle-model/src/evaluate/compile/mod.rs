@@ -142,6 +142,7 @@ fn compile(model: &Model, wanted: &[bool], moving: &[bool], measured_limits: boo
                 identity: Frame::new(model.segments.len() + 1),
             },
             plan: DerivativePlan::default(),
+            outputs: vec![],
         },
         coordinates: model
             .coordinate_ids()
@@ -184,6 +185,12 @@ fn compile(model: &Model, wanted: &[bool], moving: &[bool], measured_limits: boo
         .collect();
     compiler.program.plan =
         plan(&compiler.program.code, model.stored_len(), model.tangent_len(), &directions);
+    let number = |operand: &Operand| match *operand {
+        Operand::Constant(value) => Ok(value),
+        Operand::Register(number) => Err(number),
+    };
+    compiler.program.outputs =
+        compiler.outputs.iter().map(|own| own.iter().map(number).collect()).collect();
     compiler.program
 }
 

@@ -13,7 +13,7 @@ use condyle_model::component::Region;
 use condyle_motion::Recording;
 
 /// Frames of one person, and how many times as large that person's places are where the centre is sought.
-pub(super) struct Seen<'a> {
+pub(in crate::learning) struct Seen<'a> {
     pub leg: &'a Leg,
     pub recording: Recording,
     pub factors: [f64; 3],
@@ -32,7 +32,7 @@ const ROUNDS: usize = 6;
 ///
 /// # Errors
 /// Those of tracking.
-pub(super) fn best(
+pub(in crate::learning) fn best(
     seen: &[Seen<'_>],
     guess: [f64; 3],
     request: &Request,

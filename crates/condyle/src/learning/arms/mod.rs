@@ -25,6 +25,7 @@ mod residuals;
 mod sums;
 mod table;
 
+pub(super) use best::{Seen, best};
 pub use compared::{Compared, How, Part, Question, compare};
 pub use person::{Person, Trial};
 pub use residuals::Residuals;

@@ -41,7 +41,6 @@ pub(super) const LESS: [[(f64, f64); 2]; 2] =
 /// Table 3: hinge, planar, learned; gait, then crouch. Sums over frames of RMS distances in metres, subject 1.
 pub(super) const TABLE_3: [[f64; 3]; 2] = [[3.02, 2.48, 1.19], [272.94, 261.46, 76.34]];
 
-#[allow(dead_code, reason = "laws that are scaled come with their own command")]
 /// Table 4, its rows put right: gait, then crouch; the subject's own law, and one scaled from another.
 pub(super) const TABLE_4: [[f64; 2]; 2] = [[1.19, 2.10], [76.34, 87.35]];
 

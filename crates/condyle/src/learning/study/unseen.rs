@@ -1,10 +1,13 @@
 //! Knees compared on trials that no law has seen.
 
 use super::{Plan, Run};
-use crate::tracking::{Request, track};
+use crate::learning::arms::Residuals;
+use crate::tracking::Request;
 use condyle_diagnostics::Error;
-use condyle_learn::coupling::{LawFunction, Laws, apply};
-use condyle_learn::study::{Kind, Person};
+use condyle_learn::arms::{Arm, Centre, Leg, Scaling};
+use condyle_learn::coupling::LawFunction;
+use condyle_learn::study::{Kind, Person, Skin};
+use condyle_math::function::FunctionOfSeveral;
 use condyle_model::Model;
 
 /// How one kind of knee followed the markers of one kind of motion.
@@ -39,15 +42,54 @@ impl Followed {
     }
 }
 
-/// Names of knees.
-pub(super) const OWN: [&str; 2] = ["learned from gait", "learned from crouch"];
-pub(super) const FREE: &str = "free";
+/// Names of knees beside those of arms: by the law of the other motion, and by the law of another person.
+pub(super) const OTHER_MOTION: &str = "learned from the other motion";
+pub(super) const SCALED: [&str; 3] =
+    ["another's law, equation 3", "another's law, per axis", "another's slopes, per axis"];
 
-/// The model in which the centre follows laws.
-pub(super) fn with_laws(free: &Model, laws: &Laws) -> Result<Model, Error> {
-    let functions: Vec<(&str, &LawFunction)> =
-        laws.laws.iter().map(|law| (law.dependent.as_str(), &law.function)).collect();
-    apply(free, &laws.controls, None, &functions)
+/// A knee with its name and how many of its coordinates are free.
+type Knee = (String, usize, Model);
+
+/// All knees of a person for one kind of motion, 0 gait, 1 crouch.
+fn knees(runs: &[Run], run: &Run, leg: &Leg, motion: usize) -> Result<Vec<Knee>, Error> {
+    let [own, other] = [&run.learned[motion].centre, &run.learned[1 - motion].centre];
+    let mut knees: Vec<Knee> = vec![];
+    for arm in Arm::COMPARED {
+        let model = leg.arm(arm, Some(own))?;
+        knees.push((arm.name().to_owned(), arm.coordinates(), model));
+    }
+    let mut learned = |name: &str, centre: &Centre| -> Result<(), Error> {
+        let model = leg.arm(Arm::Learned, Some(centre))?;
+        knees.push((name.to_owned(), Arm::Learned.coordinates(), model));
+        Ok(())
+    };
+    learned(OTHER_MOTION, other)?;
+    if let Some(donor) = donor(runs, run.person, run.skin) {
+        for (name, scaling) in SCALED.iter().zip([Scaling::Pronost2010, Scaling::PerAxis]) {
+            let factors = scaling.factors(donor.sizes, run.sizes);
+            learned(name, &donor.learned[motion].centre.scaled(factors))?;
+        }
+        let factors = Scaling::PerAxis.factors(donor.sizes, run.sizes);
+        let scaled = donor.learned[motion].centre.scaled(factors);
+        learned(SCALED[2], &placed(scaled, leg.standing()))?;
+    }
+    Ok(knees)
+}
+
+/// A linear centre that is at a place while the person stands, where all angles are 0: the standing trial knows it of everybody.
+fn placed(mut centre: Centre, standing: [f64; 3]) -> Centre {
+    for (law, place) in centre.laws.iter_mut().zip(standing) {
+        if let LawFunction::Several(FunctionOfSeveral::Linear { intercept, .. }) = law {
+            *intercept = place;
+        }
+    }
+    centre
+}
+
+/// Whose law is scaled to a person: the next one's; of the last the first one's.
+pub(super) fn donor(runs: &[Run], person: usize, skin: Skin) -> Option<&Run> {
+    let of = |index: usize| runs.iter().find(|run| run.person == index && run.skin == skin);
+    of(person + 1).or_else(|| of(0)).filter(|donor| donor.person != person)
 }
 
 /// Tracks the trials that no law has seen with every knee.
@@ -60,36 +102,28 @@ pub(super) fn follow(
     let request = Request { threads: plan.threads, ..Request::default() };
     let mut all = vec![];
     for run in runs.iter() {
-        let mut knees: Vec<(String, usize, Model)> = vec![];
-        for (name, learned) in OWN.iter().zip(&run.learned) {
-            knees.push(((*name).to_owned(), 3, with_laws(&run.free, &learned.laws)?));
-        }
-        knees.push((FREE.to_owned(), 6, run.free.clone()));
-        let empty = |gait: bool| {
-            knees.iter().map(move |(knee, free, _)| Followed {
+        let leg = Leg::of(&run.free, "knee_r")?;
+        let by_motion = [knees(runs, run, &leg, 0)?, knees(runs, run, &leg, 1)?];
+        let empty = |motion: usize| {
+            by_motion[motion].iter().map(move |(knee, free, _)| Followed {
                 knee: knee.clone(),
                 free: *free,
-                gait,
+                gait: motion == 0,
                 sums: vec![],
                 frames: 0,
                 largest: 0.0,
             })
         };
-        let mut followed: Vec<Followed> = empty(true).chain(empty(false)).collect();
-        for (kind, number) in plan.trials.wanted(true) {
-            let take = plan.take(&people[run.person], (kind, number), true, run.skin)?;
-            let first = if kind == Kind::Gait { 0 } else { knees.len() };
-            for (place, (_, _, model)) in knees.iter().enumerate() {
-                let tracking = track(model, &take.recording, &request, &mut |_, _| {})?;
-                let followed = &mut followed[first + place];
-                let frames = (0..tracking.answers.len()).filter_map(|f| tracking.answers.get(f));
-                let mut sum = 0.0;
-                for answer in frames {
-                    sum += answer.rms();
-                    followed.largest = followed.largest.max(answer.max());
-                    followed.frames += 1;
-                }
-                followed.sums.push(sum);
+        let mut followed: Vec<Followed> = empty(0).chain(empty(1)).collect();
+        for wanted in plan.trials.wanted(true) {
+            let take = plan.take(&people[run.person], wanted, true, run.skin)?;
+            let motion = usize::from(wanted.0 != Kind::Gait);
+            let first = motion * by_motion[0].len();
+            for ((_, _, model), followed) in by_motion[motion].iter().zip(&mut followed[first..]) {
+                let left = Residuals::of(&leg, model, &take.recording, &request)?;
+                followed.sums.push(left.sum());
+                followed.frames += left.frames();
+                followed.largest = followed.largest.max(left.most());
             }
             step();
         }

@@ -42,21 +42,32 @@ pub(super) fn draw(
     let own = figure.pose.segment(segment).linear.inverse()
         * (point - figure.pose.segment(segment).translation);
     let now = figure.pose.frame(base);
+    let seen = |sweep: &mut Sweep, value: f64| {
+        let at = sweep.at(id, value)?;
+        let moved = at.pose.segment(segment) * own;
+        let place = now * (at.pose.frame(base).rigid_inverse() * moved);
+        place.is_finite().then_some((at.legal, place))
+    };
     let mut runs: Vec<(bool, Vec<Vec3>)> = vec![];
+    let mut before: Option<(f64, bool)> = None;
     for value in sweep.values(id) {
-        let Some(at) = sweep.at(id, value) else { continue };
-        let place = now * (at.pose.frame(base).rigid_inverse() * (at.pose.segment(segment) * own));
-        if !place.is_finite() {
-            continue;
+        let Some((legal, place)) = seen(sweep, value) else { continue };
+        // Where a limit ends it, the end is looked for: what is drawn is what is enforced.
+        if let Some((from, last)) = before.filter(|(_, last)| *last != legal) {
+            let end = ended(from, value, |middle| seen(sweep, middle).is_none_or(|s| s.0 == last));
+            if let (Some((_, place)), Some((_, run))) = (seen(sweep, end), runs.last_mut()) {
+                run.push(place);
+            }
         }
         match runs.last_mut() {
-            Some((legal, run)) if *legal == at.legal => run.push(place),
+            Some((same, run)) if *same == legal => run.push(place),
             Some((_, run)) => {
                 let shared = run.last().copied().unwrap_or(place);
-                runs.push((at.legal, vec![shared, place]));
+                runs.push((legal, vec![shared, place]));
             }
-            None => runs.push((at.legal, vec![place])),
+            None => runs.push((legal, vec![place])),
         }
+        before = Some((value, legal));
     }
     for (legal, run) in &runs {
         let (width, colour) = match (legal, centre) {
@@ -97,6 +108,18 @@ pub(super) fn draw(
         let text = format!("{key} {now}{unit} [{low}, {high}]");
         label(point, &text, palette::TEXT, scene);
     }
+}
+
+/// Halvings of a step of a sweep: to a thousandth of a degree.
+const HALVINGS: u32 = 12;
+
+/// The last value, from one that is `like` the first to one that is not, that is like the first.
+fn ended(mut from: f64, mut to: f64, mut like: impl FnMut(f64) -> bool) -> f64 {
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (from + to);
+        if like(middle) { from = middle } else { to = middle }
+    }
+    from
 }
 
 /// A number with at most one decimal.
@@ -178,10 +201,9 @@ mod tests {
             let ends = |line: &Line| [line.points[0], line.points[line.points.len() - 1]];
             let joint = [0.0, -0.4, 0.0];
             let of = |colour| scene.lines.iter().find(|l| l.colour == colour && l.points.len() > 2);
-            // 49 values over 140°: the legal run ends within a step of 60°.
-            let step = 140.0 / 48.0;
+            // From -10° to 60°, the end to a thousandth of a degree: what is drawn is what is enforced.
             let legal = angle(joint, ends(of(palette::LIMIT).expect("what is allowed")));
-            assert!(legal <= 70.0 + 1e-9 && legal > 70.0 - step, "{legal}");
+            assert!(legal <= 70.0 + 1e-4 && legal > 70.0 - 2e-3, "{legal}");
             let rest = angle(joint, ends(of(palette::LEADER).expect("what is not")));
             assert!((legal + rest - 140.0).abs() < 1e-9);
             // The sign of now is where the bone points: 0.5 rad from straight down.

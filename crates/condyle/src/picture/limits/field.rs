@@ -12,8 +12,11 @@ use condyle_model::component::FieldLimit;
 use condyle_model::evaluate::Bound;
 use condyle_model::limit::Limit;
 use condyle_model::limit::field::fibre;
+use condyle_model::model::ComponentId;
 use condyle_model::{Law, SegmentId, Signal};
 use condyle_render::{Line, Scene, Surface, palette, shape};
+use std::cell::RefCell;
+use std::rc::Rc;
 
 /// Corners are 2 degrees apart.
 const LEVEL: u32 = 5;
@@ -38,7 +41,7 @@ pub(super) fn draw(figure: &Figure, bound: &Bound, law: &FieldLimit, scene: &mut
     }
     // In the axes of the child that the limit speaks of.
     let bone = (frame * now).transpose() * (off * length.recip());
-    let reach = Reach::of(law, &numbers, bone);
+    let reach = figure.reaches.of(bound.component, law, &numbers, bone);
     let radius = (0.45 * length).clamp(1.5 * figure.unit, 4.0 * figure.unit);
     let place = |direction: Vec3| centre + frame * direction * radius;
     scene.surfaces.extend(reach.shades(&place));
@@ -86,7 +89,48 @@ fn turned(figure: &Figure, bound: &Bound, now: Mat3) -> Option<(SegmentId, Mat3)
     frame(figure, bound, &said, now)
 }
 
+/// What learned limits reach, for who draws them again and again: to work it out takes a second, and it changes only with what
+/// else the limit depends on.
+#[derive(Debug, Default)]
+pub struct Reaches(RefCell<Vec<Kept>>);
+
+#[derive(Debug)]
+struct Kept {
+    component: ComponentId,
+    /// The numbers of the limit beside the rotation, and the direction of the bone.
+    others: Vec<f64>,
+    bone: Vec3,
+    reach: Rc<Reach>,
+}
+
+/// Numbers that differ by less are the same, and so many are kept.
+const SAME: f64 = 1e-6;
+const MOST_KEPT: usize = 12;
+
+impl Reaches {
+    fn of(&self, component: ComponentId, law: &FieldLimit, all: &[f64], bone: Vec3) -> Rc<Reach> {
+        let others = all.get(4..).unwrap_or_default();
+        let same = |kept: &&Kept| {
+            let near = |(a, b): (&f64, &f64)| (a - b).abs() < SAME;
+            kept.component == component
+                && (kept.bone - bone).norm() < SAME
+                && kept.others.iter().zip(others).all(near)
+        };
+        if let Some(known) = self.0.borrow().iter().find(same) {
+            return known.reach.clone();
+        }
+        let reach = Rc::new(Reach::of(law, all, bone));
+        let mut kept = self.0.borrow_mut();
+        if kept.len() >= MOST_KEPT {
+            kept.remove(0);
+        }
+        kept.push(Kept { component, others: others.to_vec(), bone, reach: reach.clone() });
+        reach
+    }
+}
+
 /// The directions that are reached, and how far the bone may twist there.
+#[derive(Debug)]
 struct Reach {
     patch: Patch,
     /// How much of the turn about the bone is allowed at each corner, in radians.

@@ -6,6 +6,8 @@ mod cone;
 mod ellipse;
 mod field;
 
+pub use field::Reaches;
+
 use super::figure::Figure;
 use super::marks::line;
 use super::sweep::Sweep;

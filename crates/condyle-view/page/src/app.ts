@@ -1,0 +1,351 @@
+// The page's state: a model, its poses, what is shown of them. Everything that changes goes through here.
+
+import { Box3, Color, Vector3 } from "three";
+import { type Core, type Mark, Model, type Motion, Refused, type Said, type Taken } from "./core";
+import { Curves } from "./curves";
+import { byId, element } from "./dom";
+import { Figure, Shape } from "./figure";
+import { frames } from "./files";
+import { History } from "./history";
+import { Inspector } from "./inspector";
+import { Labels } from "./labels";
+import { Markers } from "./markers";
+import type { Session } from "./session";
+import { type Kind, Signs } from "./signs";
+import { Sliders } from "./sliders";
+import { Timeline, sample } from "./timeline";
+import { View } from "./view";
+
+export class App {
+  readonly view = new View(byId<HTMLCanvasElement>("picture"));
+  readonly timeline = new Timeline(() => this.timed());
+  readonly curves = new Curves();
+  readonly signs = new Signs();
+  readonly markers = new Markers();
+  readonly history = new History();
+  readonly labels = new Labels(byId("labels"), this.view);
+  readonly sliders: Sliders;
+  readonly inspector: Inspector;
+  model: Model | null = null;
+  title = "condyle";
+  motions: Motion[] = [];
+  /** Which motion drives the figure, and which the second one; -1 is none. */
+  chosen: [number, number] = [-1, -1];
+  sideBySide = false;
+  withinLimits = true;
+  /** The segment that is selected. */
+  selected: number | null = null;
+  /** The joint set whose limits, axes and network are shown. */
+  set: number | null = null;
+  show = new Set<Kind>();
+  figures: Figure[] = [];
+  marks: Mark[] = [];
+  /** Called when anything a control shows may have changed. */
+  onchange: (() => void)[] = [];
+  private shape: Shape | null = null;
+  private restless = false;
+
+  constructor(
+    readonly core: Core,
+    readonly session: Session,
+  ) {
+    this.sliders = new Sliders({
+      changed: (done) => this.changed(done),
+      chosen: (set) => this.look(set),
+      curve: (index) => {
+        this.curves.toggle(index);
+        this.timed();
+      },
+    });
+    this.inspector = new Inspector(this, byId("right"));
+    byId("coordinates").append(this.sliders.root);
+    byId("bottom").append(this.curves.root, this.timeline.root);
+    this.view.content.add(this.signs.group, this.markers.group);
+    this.view.before.push(() => this.labels.place());
+    this.view.controls.addEventListener("end", () => this.signed());
+    const find = byId<HTMLInputElement>("find");
+    find.addEventListener("input", () => this.model && this.sliders.find(find.value, this.model.about));
+  }
+
+  /** Shows a model; motions that came with it, and the old pose where `kept` and names are the same. */
+  open(model: Model, title: string, motions: Motion[], kept = false): void {
+    const before = kept && this.model ? named(this.model) : null;
+    for (const figure of this.figures) {
+      this.view.content.remove(figure.mesh);
+      figure.dispose();
+    }
+    this.shape?.geometry.dispose();
+    this.model?.close();
+    this.model = model;
+    this.title = title;
+    this.motions = motions;
+    this.chosen = [motions.length > 0 ? 0 : -1, -1];
+    if (!kept) [this.selected, this.set] = [null, null];
+    this.curves.clear();
+    byId("title").textContent = title;
+    document.title = `${title} – condyle`;
+    this.shape = new Shape(model);
+    this.figures = [new Figure(this.shape, model.actors[0]!)];
+    this.view.content.add(this.figures[0]!.mesh);
+    if (before) {
+      for (const c of model.about.coordinates) {
+        const value = before.get(c.key);
+        if (value) model.actors[0]!.asked.set(value, c.place);
+      }
+      model.actors[0]!.pose(this.withinLimits);
+    }
+    this.sliders.shows(model.about, model.actors[0]!);
+    this.view.shows(model.about);
+    this.view.themed();
+    if (!kept) this.view.look(this.box());
+    this.history.begin(model.actors[0]!.asked);
+    byId("waiting").hidden = true;
+    this.motionsChanged();
+    this.posed();
+    this.select(this.selected);
+  }
+
+  /** Reads files that a person gives. */
+  async take(files: Iterable<File>): Promise<void> {
+    // A model first, whatever the order in which they were dropped.
+    const all = await Promise.all([...files].map(async (file) => ({ file, bytes: new Uint8Array(await file.arrayBuffer()) })));
+    const models = /\.(toml|osim|xml|json|urdf|skel|asf|glb|gltf|bvh)$/i;
+    all.sort((a, b) => Number(models.test(b.file.name)) - Number(models.test(a.file.name)));
+    for (const { file, bytes } of all) {
+      await this.attempt(() => this.took(this.core.take(file.name, bytes, this.model), file.name));
+    }
+  }
+
+  /** Shows what was read. */
+  took(taken: Taken, name: string): void {
+    if (taken.model) {
+      this.open(taken.model, name.replace(/\.[^.]*$/, ""), taken.motion ? [taken.motion] : []);
+    } else if (taken.motion && this.model && taken.motion.times.length === 1 && !taken.motion.markers) {
+      // One frame is a pose, not a motion.
+      this.chosen = [-1, -1];
+      this.motionsChanged();
+      this.put(Float64Array.from(taken.motion.values), true);
+    } else if (taken.motion) {
+      this.motions.push(taken.motion);
+      this.chosen = [this.motions.length - 1, this.chosen[0]];
+      if (taken.motion.markers) this.show.add("markers");
+      this.motionsChanged();
+      this.timed();
+    }
+    if (taken.warnings.length > 0) this.say(taken.warnings);
+  }
+
+  /** Runs something that may be refused; what is wrong is shown. */
+  async attempt(work: () => void | Promise<void>): Promise<void> {
+    try {
+      await work();
+    } catch (error) {
+      if (error instanceof Refused) this.say(error.faults);
+      else this.say([{ severity: "error", text: error instanceof Error ? error.message : String(error) }]);
+    }
+  }
+
+  /** Shows sentences over the picture until they are sent away. */
+  say(said: Said[]): void {
+    const box = byId("fault");
+    const shut = element("button", { onclick: () => (box.hidden = true), "aria-label": "close" }, "✕");
+    const line = (one: Said) => element("div", {}, `${one.severity}: ${one.line ? `line ${one.line}: ` : ""}${one.text}`);
+    box.replaceChildren(shut, ...said.slice(0, 20).map(line));
+    if (said.length > 20) box.append(element("div", {}, `and ${said.length - 20} more`));
+    box.hidden = said.length === 0;
+  }
+
+  /** A slider or a number changed what is asked. */
+  changed(done: boolean): void {
+    const actor = this.model?.actors[0];
+    if (!actor) return;
+    actor.pose(this.withinLimits);
+    if (done) this.history.keep(actor.asked);
+    this.posed();
+  }
+
+  /** Puts a whole pose. */
+  put(pose: Float64Array, keep: boolean): void {
+    this.model?.actors[0]!.asked.set(pose);
+    this.changed(keep);
+  }
+
+  undo(): void {
+    const pose = this.history.undo();
+    if (pose) this.put(pose, false);
+  }
+
+  redo(): void {
+    const pose = this.history.redo();
+    if (pose) this.put(pose, false);
+  }
+
+  neutral(): void {
+    if (!this.model) return;
+    const pose = new Float64Array(this.model.about.stored);
+    for (const c of this.model.about.coordinates) pose.set(c.default, c.place);
+    this.put(pose, true);
+  }
+
+  /** Shows everything anew after a pose was evaluated. */
+  posed(): void {
+    for (const figure of this.figures) figure.moved();
+    this.sliders.refresh();
+    this.inspector.refresh();
+    this.signed();
+    for (const call of this.onchange) call();
+  }
+
+  /** Draws signs anew, once for each picture. */
+  signed(): void {
+    if (this.restless) return;
+    this.restless = true;
+    requestAnimationFrame(() => {
+      this.restless = false;
+      this.resigned();
+      this.view.draw();
+    });
+  }
+
+  private resigned(): void {
+    const { model, view } = this;
+    if (!model) return;
+    const at = this.set === null ? [] : [model.about.sets[this.set]!];
+    // Limits of a whole body are hundreds of sweeps: they are drawn of what is looked at.
+    const one: Kind[] = ["limits", "centres"];
+    const show = [...this.show].filter((kind) => kind !== "markers" && (at.length > 0 || !one.includes(kind)));
+    try {
+      this.signs.update(model, { actor: 0, show, at, unit: view.unit }, view.size);
+    } catch (error) {
+      this.signs.clear();
+      if (error instanceof Refused) this.say(error.faults);
+    }
+    const motion = this.motions[this.chosen[0]] ?? null;
+    this.markers.update(model.actors[0]!, motion, this.timeline.time, 0.008 * Math.min(1, view.unit / 0.05), this.show.has("markers"));
+    this.labels.set(this.signs.labels);
+  }
+
+  /** A motion was added or another one is to be seen. */
+  motionsChanged(): void {
+    const { model } = this;
+    if (!model) return;
+    const second = this.chosen[1] >= 0;
+    if (second && this.figures.length < 2) {
+      const figure = new Figure(this.shape!, model.actor(1));
+      this.figures.push(figure);
+      this.view.content.add(figure.mesh);
+    }
+    if (!second && this.figures.length > 1) {
+      const figure = this.figures.pop()!;
+      this.view.content.remove(figure.mesh);
+      figure.dispose();
+    }
+    const other = this.figures[1];
+    if (other) {
+      other.ghost(!this.sideBySide);
+      const wide = this.figures[0]!.box().getSize(new Vector3());
+      other.mesh.position.set(0, 0, 0);
+      if (this.sideBySide) other.mesh.position.copy(sideways(model, 1.2 * Math.max(wide.x, wide.z, 0.5)));
+    }
+    const seen = this.seen();
+    this.marks = seen.flatMap((motion) => motion.spans);
+    this.timeline.shows(seen, this.marks);
+    this.inspector.build();
+    // What is broken takes a moment for long motions: the picture comes first.
+    if (seen[0]) setTimeout(() => this.check(seen[0]!), 50);
+    for (const call of this.onchange) call();
+  }
+
+  /** The motions that are seen. */
+  seen(): Motion[] {
+    return this.chosen.flatMap((index) => this.motions[index] ?? []);
+  }
+
+  /** The time has changed. */
+  timed(): void {
+    const { model } = this;
+    if (!model) return;
+    this.chosen.forEach((index, which) => {
+      const motion = this.motions[index];
+      if (!motion || motion.times.length === 0) return;
+      const actor = model.actor(which);
+      sample(motion, this.timeline.time, actor.asked);
+      // A motion is shown as it is, so that what it breaks is seen.
+      actor.pose(false);
+    });
+    this.curves.draw(model.about, this.seen(), this.timeline.time);
+    this.posed();
+  }
+
+  private check(motion: Motion): void {
+    if (!this.model || this.motions[this.chosen[0]] !== motion) return;
+    void this.attempt(() => {
+      const found = this.model!.ask<{ spans: Mark[] }>("check", frames(motion)).value.spans;
+      const order = ["violation", "jump", "limited", "undetermined"];
+      this.marks = [...found, ...this.marks].sort((a, b) => order.indexOf(a.kind) - order.indexOf(b.kind) || a.from - b.from);
+      this.timeline.marked(this.marks);
+      this.inspector.build();
+    });
+  }
+
+  /** Selects a segment. */
+  select(segment: number | null): void {
+    this.selected = segment;
+    const { model } = this;
+    if (!model) return;
+    const accent = new Color(model.about.colours["accent"] ?? "#e06a2b");
+    this.shape?.accent(new Set(segment === null ? [] : [segment]), accent);
+    if (segment !== null) {
+      // A bone without coordinates of its own goes with its parent's.
+      let at: number | null = segment;
+      const has = (set: number | null | undefined) => set != null && model.about.coordinates.some((c) => c.set === set);
+      while (at !== null && !has(model.about.segments[at]?.set)) at = model.about.segments[at]?.parent ?? null;
+      const set = at === null ? null : (model.about.segments[at]?.set ?? null);
+      if (set !== null) {
+        this.set = set;
+        this.sliders.open(set, model.about);
+      }
+    }
+    this.inspector.build();
+    this.signed();
+  }
+
+  /** Looks at a joint set. */
+  look(set: number): void {
+    this.set = set;
+    this.inspector.build();
+    this.signed();
+  }
+
+  toggle(kind: Kind): void {
+    if (!this.show.delete(kind)) this.show.add(kind);
+    this.signed();
+    for (const call of this.onchange) call();
+  }
+
+  limits(on: boolean): void {
+    this.withinLimits = on;
+    this.changed(false);
+  }
+
+  /** The box of all figures. */
+  box(): Box3 {
+    return this.figures.reduce((box, figure) => box.union(figure.box()), new Box3());
+  }
+
+  hit(ray: import("three").Ray): ReturnType<Shape["hit"]> {
+    return this.shape?.hit(ray, this.model!.actors[0]!, new Vector3()) ?? null;
+  }
+}
+
+/** The asked values of a model by name. */
+function named(model: Model): Map<string, Float64Array> {
+  const { asked } = model.actors[0]!;
+  const value = (place: number, kind: string) => asked.slice(place, place + (kind === "orientation" ? 4 : 1));
+  return new Map(model.about.coordinates.map((c) => [c.key, value(c.place, c.kind)]));
+}
+
+function sideways(model: Model, by: number): Vector3 {
+  const up = model.about.up === "y" ? new Vector3(0, 1, 0) : new Vector3(0, 0, 1);
+  return new Vector3(...model.about.ahead).cross(up).normalize().multiplyScalar(by);
+}
