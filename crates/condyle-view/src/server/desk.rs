@@ -274,8 +274,7 @@ impl State {
             && session.model.stored_len() == model.stored_len();
         session.model = model;
         if !same {
-            let opened =
-                self.motions.iter().filter_map(|path| shown(path, &session.model).ok());
+            let opened = self.motions.iter().filter_map(|path| shown(path, &session.model).ok());
             session.motions = opened.map(|read| read.value).collect();
         }
         session.motions.retain(|shown| fits(&shown.motion, session.model.stored_len()));
