@@ -5,7 +5,8 @@
 
 #[cfg(feature = "document")]
 use crate::document::{
-    self, Document, Kind, goals::GoalList, law::LawDocument, names::NameTable, setup::TrackSetup,
+    self, Document, Kind, goals::GoalList, landmarks::LandmarksDocument, law::LawDocument,
+    names::NameTable, setup::TrackSetup,
 };
 #[cfg(feature = "glb")]
 use crate::glb;
@@ -53,6 +54,8 @@ pub enum ContentKind {
     Limit,
     /// How coordinates follow others.
     Law,
+    /// Where a law is carried to.
+    Landmarks,
     /// A scene for viewers.
     Scene,
 }
@@ -72,6 +75,7 @@ impl ContentKind {
             Self::Recipe => "a recipe",
             Self::Limit => "a learned limit",
             Self::Law => "a law of coordinates",
+            Self::Landmarks => "landmarks of joints",
             Self::Scene => "a scene",
         }
     }
@@ -118,6 +122,9 @@ pub enum Content {
     /// How coordinates follow others.
     #[cfg(feature = "document")]
     Law(Box<LawDocument>),
+    /// Where a law is carried to.
+    #[cfg(feature = "document")]
+    Landmarks(Box<LandmarksDocument>),
     /// A setup of inverse kinematics.
     #[cfg(feature = "opensim")]
     Setup(setup::IkSetup),
@@ -159,6 +166,8 @@ impl Content {
             Self::Limit(_) | Self::Spheres(_) => ContentKind::Limit,
             #[cfg(feature = "document")]
             Self::Law(_) => ContentKind::Law,
+            #[cfg(feature = "document")]
+            Self::Landmarks(_) => ContentKind::Landmarks,
             #[cfg(feature = "opensim")]
             Self::Setup(_) | Self::Tasks(_) => ContentKind::Setup,
         }
@@ -250,6 +259,7 @@ pub const FORMATS: &[Format] = &[
             ContentKind::Recipe,
             ContentKind::Limit,
             ContentKind::Law,
+            ContentKind::Landmarks,
         ],
         writes: &[ContentKind::Model, ContentKind::Limit, ContentKind::Law],
         sniff: |bytes| document::kind(bytes).is_some(),
@@ -269,6 +279,8 @@ pub const FORMATS: &[Format] = &[
                 Some(Kind::Law) => {
                     document::law::read(text, include)?.map(|law| Content::Law(Box::new(law)))
                 }
+                Some(Kind::Landmarks) => document::landmarks::read(text, include)?
+                    .map(|landmarks| Content::Landmarks(Box::new(landmarks))),
                 // Those that are no document at all get the message of a model.
                 _ => document::read(text, include)?.map(Content::Document),
             })

@@ -9,6 +9,7 @@
 //! | [`rotations`] | orientations of segments from tables, inertial sensors and motions |
 //! | [`limits`] | limits of joints from orientations |
 //! | [`study`] | virtual people whose knees are known, for the study of Pronost et al. 2010 |
+//! | [`transfer`] | laws on the joints of other figures, by three landmarks |
 
 pub mod arms;
 pub mod calibration;
@@ -17,3 +18,4 @@ pub mod frames;
 pub mod limits;
 pub mod rotations;
 pub mod study;
+pub mod transfer;

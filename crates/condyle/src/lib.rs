@@ -261,6 +261,7 @@
 //! | [`picture`], [`render`] | still pictures of models, and of any surfaces and lines |
 //! | [`posing`] | the pose nearest to rest that meets goals |
 //! | [`learning`] | limits of joints from recordings, and what they say |
+//! | [`transferring`] | learned laws on the joints of other figures |
 //! | [`check`] | findings about a model, or about a motion of it |
 //! | [`formats`], [`open`], [`encode`] | bytes to values and back, by path or not |
 //! | [`shipped`], [`scene`] | models that come along, animated scenes |
@@ -296,6 +297,8 @@ pub mod shipped;
 #[cfg(feature = "opensim")]
 pub mod subject;
 pub mod tracking;
+#[cfg(feature = "document")]
+pub mod transferring;
 
 pub use condyle_check as check;
 pub use condyle_diagnostics::{Diagnostic, Error, Place, Read, Severity, Subject};

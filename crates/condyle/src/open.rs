@@ -13,7 +13,9 @@ use crate::tracking::Request;
 use condyle_diagnostics::did_you_mean;
 use condyle_diagnostics::{Diagnostic, Error, Read, nearest};
 #[cfg(feature = "document")]
-use condyle_formats::document::{self, goals::GoalList, law::LawDocument, names::NameTable};
+use condyle_formats::document::{
+    self, goals::GoalList, landmarks::LandmarksDocument, law::LawDocument, names::NameTable,
+};
 #[cfg(feature = "glb")]
 use condyle_formats::glb;
 #[cfg(feature = "opensim")]
@@ -768,6 +770,18 @@ pub fn limit(path: &Path) -> Result<Read<LearnedLimit>, OpenError> {
 pub fn law(path: &Path) -> Result<Read<LawDocument>, OpenError> {
     only(path, ContentKind::Law, Zeros::Told, |content| match content {
         Content::Law(law) => Some(*law),
+        _ => None,
+    })
+}
+
+/// Opens where a law is carried to.
+///
+/// # Errors
+/// As [`content`].
+#[cfg(feature = "document")]
+pub fn landmarks(path: &Path) -> Result<Read<LandmarksDocument>, OpenError> {
+    only(path, ContentKind::Landmarks, Zeros::Told, |content| match content {
+        Content::Landmarks(landmarks) => Some(*landmarks),
         _ => None,
     })
 }

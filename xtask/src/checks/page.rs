@@ -32,8 +32,8 @@ const SOURCES: [&str; 6] = [
 const BUILT: [&str; 3] = ["index.html", "assets/page.js", "assets/core.wasm.lzma"];
 /// The list of hashes.
 const HASHES: &str = "crates/condyle-view/page/dist/sources.sha256";
-/// The most that the page may weigh as a server that packs sends it: a megabyte, in bytes.
-const HEAVIEST: usize = 1 << 20;
+/// The most that the page may weigh as a server that packs sends it, in bytes.
+const HEAVIEST: usize = 1_000_000;
 /// The target of browsers.
 const BROWSER: &str = "wasm32-unknown-unknown";
 

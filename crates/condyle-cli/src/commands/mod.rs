@@ -15,6 +15,7 @@ mod pose;
 mod render;
 mod scale;
 mod track;
+mod transfer;
 mod upkeep;
 mod view;
 
@@ -105,6 +106,8 @@ enum Command {
     Scale(scale::Scale),
     /// Learn from recordings which rotations of a joint are possible, and how coordinates follow others.
     Learn(learn::Learn),
+    /// Put a learned law into another model, by three landmarks or by name.
+    Transfer(transfer::Transfer),
     /// Ask learned limits about rotations, and about the mobility of a joint.
     Limits(limits::Limits),
     /// Find the legal motion nearest to a given one, and what limits it broke.
@@ -207,6 +210,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Outcome, Failure> {
         Command::Track(command) => command.run(),
         Command::Scale(command) => command.run(),
         Command::Learn(command) => command.run(),
+        Command::Transfer(command) => command.run(),
         Command::Limits(command) => command.run(),
         Command::Constrain(command) => command.run(),
         Command::Convert(command) => command.run(),

@@ -33,6 +33,7 @@ mod skeleton;
 mod standard_input;
 mod study;
 mod track;
+mod transfer;
 mod upkeep;
 
 use command::{Answer, Folder};

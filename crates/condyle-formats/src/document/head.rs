@@ -28,10 +28,12 @@ pub enum Kind {
     Names,
     /// What a pose should do.
     Goals,
+    /// Where a law is carried to.
+    Landmarks,
 }
 
 /// Each kind, its name in a document, and what a sentence calls one.
-const KINDS: [(Kind, &str, &str); 7] = [
+const KINDS: [(Kind, &str, &str); 8] = [
     (Kind::Model, "model", "a model"),
     (Kind::Limit, "limit", "a limit"),
     (Kind::Law, "law", "a law"),
@@ -39,6 +41,7 @@ const KINDS: [(Kind, &str, &str); 7] = [
     (Kind::Setup, "setup", "a setup"),
     (Kind::Names, "names", "a list of names"),
     (Kind::Goals, "goals", "a list of goals"),
+    (Kind::Landmarks, "landmarks", "a list of landmarks"),
 ];
 
 impl Kind {

@@ -14,25 +14,28 @@
 //! ci95        = { intercept = [low, high], TERM = [low, high] }
 //! r2, rmse, left_out_rmse, mean_left_out_rmse, accepted   = how far it can be believed
 //! [learning]  = basis, ridge, terms, dropped, condition, trials: how it was learned
+//! [joint]     = the joint's landmarks and names, as [law] in a document of kind `landmarks`
 //! ```
 //!
 //! Numbers are in radians and metres. Only `control` and a function for each law must be given, so that a law from a paper
 //! is a document of a few lines.
 
 use super::fields::{Fields, Reader};
+use super::landmarks::law_frame_lines;
 use super::model::{function, number, numbers, several_of, text};
 use super::region::region_lines;
 use super::tree::Node;
 use super::{Form, Kind, read_kind};
 use condyle_diagnostics::{Error, Read};
 use condyle_learn::coupling::{Basis, Law, LawFunction, Laws};
+use condyle_learn::transfer::LawFrame;
 use condyle_model::CoordinateKind;
 use condyle_model::component::Region;
 use std::fmt::Write;
 
 const FORM: Form = Form {
     kind: Kind::Law,
-    keys: &["control", "kinds", "source", "frames", "region", "law", "learning"],
+    keys: &["control", "kinds", "source", "frames", "region", "law", "learning", "joint"],
     own: &[],
     repeated: &[],
 };
@@ -90,6 +93,8 @@ pub struct LawDocument {
     pub dropped: Vec<String>,
     /// How the terms were chosen.
     pub basis: Basis,
+    /// The joint's landmarks, and which coordinates are its angles and translations.
+    pub joint: Option<LawFrame>,
     /// The ridge.
     pub ridge: f64,
     /// The condition number; NaN where it is not said.
@@ -127,6 +132,7 @@ impl From<&Laws> for LawDocument {
             terms: laws.terms.clone(),
             dropped: laws.dropped.iter().map(|(name, _)| name.clone()).collect(),
             basis: laws.basis,
+            joint: None,
             ridge: laws.ridge,
             condition: laws.condition,
             trials: laws.trials.iter().map(|trial| (trial.name.clone(), trial.frames)).collect(),
@@ -216,6 +222,10 @@ impl Reader<'_> {
             None => Some(None),
             Some(node) => self.region(node, "region", controls.len()).map(Some),
         };
+        let joint = match top.get("joint") {
+            None => Some(None),
+            Some(node) => self.law_frame(node, "joint").map(Some),
+        };
         let Some(table) = top.get("law") else {
             self.missing(top, "law", "a table [law.D] for a coordinate D that follows");
             return None;
@@ -243,6 +253,7 @@ impl Reader<'_> {
             terms: vec![],
             dropped: vec![],
             basis: Basis::Linear,
+            joint: joint?,
             ridge: 0.0,
             condition: f64::NAN,
             trials: vec![],
@@ -410,6 +421,9 @@ pub fn write(laws: &LawDocument) -> String {
         for line in region_lines(region) {
             let _ = writeln!(out, "{line}");
         }
+    }
+    if let Some(joint) = &laws.joint {
+        let _ = write!(out, "\n[joint]\n{}", law_frame_lines(joint));
     }
     let learned = !laws.terms.is_empty() || !laws.trials.is_empty() || laws.condition.is_finite();
     if learned {

@@ -13,7 +13,8 @@
 //! knows nothing of any kind. [`model`] is the kind that describes models; its functions are
 //! available here, too. [`setup`] is how recordings are tracked, [`names`] what their labels are called
 //! in models, [`goals`] what a pose should do, [`recipe`] which markers give the orientation of a segment,
-//! [`limit`] which rotations of a segment in another are possible, [`law`] how coordinates follow others. [`kind()`] tells the kind of a text.
+//! [`limit`] which rotations of a segment in another are possible, [`law`] how coordinates follow others,
+//! [`landmarks`] where such a law is carried to. [`kind()`] tells the kind of a text.
 //! `edit` (a feature) changes single numbers of a model's text.
 //!
 //! Reading reports everything that is wrong at once, each with its line and column. Its codes are
@@ -32,6 +33,7 @@ mod function;
 pub mod goals;
 mod head;
 mod include;
+pub mod landmarks;
 pub mod law;
 pub mod limit;
 pub mod model;

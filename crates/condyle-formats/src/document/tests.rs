@@ -151,7 +151,7 @@ fn errors_of_another_kind_have_their_places_and_generic_codes() {
 
 #[test]
 fn the_kind_is_found_in_the_head() {
-    let all = ["model", "limit", "law", "recipe", "setup", "names"];
+    let all = ["model", "limit", "law", "recipe", "setup", "names", "landmarks"];
     let found = all.map(|name| kind(format!("condyle = 1\nkind = \"{name}\"\n")).unwrap());
     assert_eq!(found.map(Kind::name), all);
     for head in [

@@ -1,5 +1,6 @@
 //! OpenSim's XML files.
 
+pub mod coupled;
 pub mod model;
 pub mod scale;
 pub mod scale_setup;

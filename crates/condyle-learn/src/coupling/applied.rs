@@ -4,7 +4,7 @@ use super::LawFunction;
 use condyle_diagnostics::Error;
 use condyle_math::function::{Function, FunctionOfSeveral};
 use condyle_model::component::{Correlate, Map, Region};
-use condyle_model::{Law, Model, ModelBuilder, Signal};
+use condyle_model::{JointSetId, Law, Model, ModelBuilder, Signal};
 
 /// The model in which coordinates follow others by laws: the component `D_law` of kind `correlate` in the joint set of each
 /// dependent D. Controls may lie in any joint.
@@ -67,26 +67,38 @@ pub fn apply(
         while taken(&free) {
             free.push('_');
         }
-        let leader = match function {
-            LawFunction::Several(function) => {
-                let law = Correlate { function: function.clone(), region: region.cloned() };
-                builder.component(set, &free, Law::Correlate(law), inputs.clone())
-            }
-            LawFunction::Sum { intercept, parts } => {
-                let mut sum = vec![];
-                for (k, (part, input)) in parts.iter().zip(&inputs).enumerate() {
-                    let map = Map { functions: vec![Function::clone(part)] };
-                    let name = format!("{free}_{}", k + 1);
-                    sum.push(builder.component(set, &name, Law::Map(map), vec![*input]));
-                }
-                let slopes = vec![1.0; sum.len()];
-                let all = FunctionOfSeveral::Linear { slopes, intercept: *intercept };
-                builder.combine(set, &free, sum, all)
-            }
-        };
+        let leader = leader(&mut builder, set, &free, &inputs, function, region);
         let coordinate = builder.coordinate_mut(id);
         coordinate.locked = false;
         builder.follow(id, leader);
     }
     builder.build()
+}
+
+/// The component that computes a law, with the name `name`; those of its parts are named after it.
+pub(crate) fn leader(
+    builder: &mut ModelBuilder,
+    set: JointSetId,
+    name: &str,
+    inputs: &[Signal],
+    function: &LawFunction,
+    region: Option<&Region>,
+) -> Signal {
+    match function {
+        LawFunction::Several(function) => {
+            let law = Correlate { function: function.clone(), region: region.cloned() };
+            builder.component(set, name, Law::Correlate(law), inputs.to_vec())
+        }
+        LawFunction::Sum { intercept, parts } => {
+            let mut sum = vec![];
+            for (k, (part, input)) in parts.iter().zip(inputs).enumerate() {
+                let map = Map { functions: vec![Function::clone(part)] };
+                let name = format!("{name}_{}", k + 1);
+                sum.push(builder.component(set, &name, Law::Map(map), vec![*input]));
+            }
+            let slopes = vec![1.0; sum.len()];
+            let all = FunctionOfSeveral::Linear { slopes, intercept: *intercept };
+            builder.combine(set, name, sum, all)
+        }
+    }
 }

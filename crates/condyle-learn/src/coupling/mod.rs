@@ -28,6 +28,7 @@
 //! | `region` | where the training angles are |
 //! | `law` | what is learned |
 //! | `applied` | laws in a model |
+//! | `scaled` | laws on a body of another size |
 
 mod applied;
 mod basis;
@@ -38,10 +39,12 @@ mod law;
 mod learn;
 mod region;
 mod samples;
+mod scaled;
 mod split;
 mod student;
 
 pub use applied::apply;
+pub(crate) use applied::leader;
 pub use basis::{Basis, LawFunction};
 pub use compared::{Scope, Scoped};
 pub use judged::{LeftOut, Validity};
@@ -49,5 +52,6 @@ pub use law::{About, Law, Laws, TrialOf};
 pub use learn::{Settings, learn};
 pub use region::region_of;
 pub use samples::{Groups, Samples, Trial};
+pub use scaled::{ScaleRule, SizeRatios, of_opposite, scaled};
 pub use split::{Split, split};
 pub use student::{quantile as t_quantile, share as t_share};

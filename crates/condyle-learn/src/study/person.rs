@@ -61,7 +61,7 @@ impl Person {
         let mut dice = Dice::of(seed, &[index as u64, 1]);
         let thigh = 0.245 * stature - 0.02 * stature;
         let shank = 0.246 * stature;
-        let width = 0.055 * stature + 0.004 * dice.normal();
+        let width = 0.055 * stature + 0.003 * dice.normal();
         let size = stature / 1.75;
         let knee = match index {
             0 | 1 => Knee::Linear(LINEAR[index]),
@@ -69,9 +69,10 @@ impl Person {
             _ => Knee::Planar(size),
         };
         let tilt = if index % 2 == 1 && index > 1 { [0.07, -0.05] } else { [0.0; 2] };
-        // Millimetres by which a marker is beside its landmark.
+        // Markers are 1.5 mm (SD) beside their landmarks: constants of T_z then spread over people by 7 mm; those of
+        // Table 1 of Pronost et al. 2010 do by 5.
         let mut beside = |[x, y, z]: [f64; 3]| {
-            Vec3::new(x, y, z) + Vec3::new(dice.normal(), dice.normal(), dice.normal()) * 0.004
+            Vec3::new(x, y, z) + Vec3::new(dice.normal(), dice.normal(), dice.normal()) * 1.5e-3
         };
         let half = 0.5 * width;
         let places = [

@@ -59,6 +59,7 @@ export function authoring(app: App): void {
   const panel = new Panel(app);
   app.inspector.also.push(panel.root);
   app.inspector.onbuild.push(() => panel.build());
+  app.inspector.build();
   void panel.load();
 }
 

@@ -47,7 +47,8 @@ export class Inspector {
       const name = about.sets[set] ?? "";
       parts.push(
         element("h2", {}, `network of ${name}`),
-        element("div", { class: "net" }, this.network.root),
+        // While it is seen large, it stays there.
+        this.dialog.open ? "" : element("div", { class: "net" }, this.network.root),
         element("button", { onclick: () => this.large(name) }, "larger"),
       );
       this.network.show(model, set);

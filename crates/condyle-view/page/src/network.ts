@@ -20,7 +20,7 @@ interface Box {
 }
 
 const SVG = "http://www.w3.org/2000/svg";
-const WIDE = 150;
+const WIDE = 170;
 const HIGH = 40;
 const GAP = { x: 46, y: 12 };
 
@@ -100,11 +100,11 @@ export class Network {
     const { effective } = this.model.actor(actor);
     for (const [key, text] of this.values) {
       const number = Number(key.slice(1));
-      if (key.startsWith("c")) text.textContent = (live[number] ?? []).map(short).join("  ");
+      if (key.startsWith("c")) text.textContent = listed(live[number] ?? []);
       else if (key.startsWith("q")) {
         const { place, kind } = this.model.about.coordinates[number]!;
         const count = kind === "orientation" ? 4 : 1;
-        text.textContent = Array.from(effective.subarray(place, place + count), short).join("  ");
+        text.textContent = listed(Array.from(effective.subarray(place, place + count)));
       }
     }
   }
@@ -133,7 +133,7 @@ export class Network {
       const group = made("g", { class: `box ${box.key.charAt(0)}` });
       group.append(
         shape,
-        words("text", { x: x(box) + 10, y: y(box) + 15, class: "title" }, cut(box.title)),
+        words("text", { x: x(box) + 10, y: y(box) + 15, class: "title" }, cut(box.title, box.key.startsWith("c") ? 26 - box.kind.length : 24)),
         words("text", { x: x(box) + WIDE - 10, y: y(box) + 15, class: "kind" }, box.key.startsWith("c") ? box.kind : ""),
         words("title", {}, `${box.title}: ${box.kind}`),
       );
@@ -158,8 +158,15 @@ function words(tag: string, attributes: Record<string, string | number>, text: s
   return element;
 }
 
-function cut(text: string): string {
-  return text.length > 20 ? `${text.slice(0, 19)}…` : text;
+function cut(text: string, most: number): string {
+  return text.length > most ? `${text.slice(0, most - 1)}…` : text;
+}
+
+/** Numbers as far as there is room for them. */
+function listed(values: number[]): string {
+  if (values.length < 4) return values.map(short).join("  ");
+  const first = values.slice(0, 4).map((value) => value.toFixed(2));
+  return first.join("  ") + (values.length > 4 ? " …" : "");
 }
 
 function short(value: number): string {

@@ -62,6 +62,7 @@ export function tools(app: App, dragging: { on: boolean }): void {
   );
 
   bar.append(
+    file,
     open,
     shipped,
     view,

@@ -7,11 +7,12 @@ use crate::failure::{Failure, warn_about, warned};
 use crate::output;
 use crate::progress::frames_bar;
 use clap::Args;
-use condyle::formats::document::{self, law};
+use condyle::formats::document::{self, law, law::LawDocument};
 use condyle::formats::{Format, Id};
-use condyle::learn::coupling::{About, Basis, Settings, apply, learn, split};
+use condyle::learn::coupling::{About, Basis, LawFunction, Settings, learn, split};
 use condyle::learning::{Coupled, GroupTable, gather, group_table};
 use condyle::tracking::Request;
+use condyle::transferring::{coupled_text, onto_named};
 use condyle::{Model, encode, open};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -72,7 +73,8 @@ pub(super) struct Coupling {
     /// All numbers about the laws, in JSON.
     #[arg(long, value_name = "R.json")]
     report: Option<PathBuf>,
-    /// The model in which the coordinates that follow do so by the laws (.toml, .osim).
+    /// The model in which the coordinates that follow do so by the laws (.toml, .osim). An `.osim` comes back with muscles, shapes and
+    /// masses; of laws of splines with segments, joints and markers alone.
     #[arg(long, value_name = "MODEL", requires = "model")]
     apply: Option<PathBuf>,
 }
@@ -85,6 +87,11 @@ pub(super) fn basis(text: &str) -> Result<Basis, String> {
 pub(super) fn ridge(text: &str) -> Result<f64, String> {
     let ridge = text.parse().ok().filter(|r: &f64| r.is_finite() && *r >= 0.0);
     ridge.ok_or_else(|| "give a number of 0 or more".to_owned())
+}
+
+/// Whether a law is a sum of splines: such a one needs helper coordinates in an `.osim`, so that the file is written anew.
+fn is_of_splines(law: &LawFunction) -> bool {
+    matches!(law, LawFunction::Sum { .. })
 }
 
 impl Coupling {
@@ -138,15 +145,17 @@ impl Coupling {
         laws.about = self.about(&wanted, to_screen);
         warn_about(&self.trials[0], &laws.warnings());
         if let (Some(path), Some(model)) = (&self.apply, &wanted.model) {
-            let functions: Vec<_> =
-                laws.laws.iter().map(|law| (law.dependent.as_str(), &law.function)).collect();
-            let mut coupled = apply(model, &laws.controls, Some(&laws.region), &functions)?;
-            coupled.set_name(model.name());
-            let bytes = match target {
-                Some(format) if format.id != Id::Document => {
+            let document: LawDocument = (&laws).into();
+            let bytes = match (self.text_of(path)?, target) {
+                // An `.osim` comes back as its own text, muscles and masses included.
+                (Some(text), _) if laws.laws.iter().all(|law| !is_of_splines(&law.function)) => {
+                    coupled_text(&text, &document)?.into_bytes()
+                }
+                (_, Some(format)) if format.id != Id::Document => {
+                    let coupled = onto_named(model, &document)?;
                     warned(path, encode::model(format, &coupled)?)
                 }
-                _ => document::write(&coupled).into_bytes(),
+                _ => document::write(&onto_named(model, &document)?).into_bytes(),
             };
             output::write(path, &bytes)?;
         }
@@ -160,6 +169,15 @@ impl Coupling {
             output::print(report::text(&laws, &divided, &gathered).as_bytes())?;
         }
         Ok(Outcome::Done)
+    }
+
+    /// The text of the model, where it is an `.osim` and is written as one.
+    fn text_of(&self, path: &Path) -> Result<Option<String>, Failure> {
+        let Some(model) = &self.model else { return Ok(None) };
+        if open::ending(path) != "osim" || open::ending(model) != "osim" {
+            return Ok(None);
+        }
+        Ok(Some(warned(model, open::osim_text(model)?)))
     }
 
     /// The format of the model that is written, where one is.

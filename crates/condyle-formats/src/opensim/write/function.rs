@@ -4,7 +4,7 @@ use condyle_math::function::{Curve, Function, FunctionOfSeveral};
 use std::fmt::Write;
 
 /// Numbers with the fewest digits that give them back.
-pub(super) fn numbers(all: impl IntoIterator<Item = f64>) -> String {
+pub(in crate::opensim) fn numbers(all: impl IntoIterator<Item = f64>) -> String {
     let mut text = String::new();
     for number in all {
         if !text.is_empty() {
@@ -16,7 +16,7 @@ pub(super) fn numbers(all: impl IntoIterator<Item = f64>) -> String {
 }
 
 /// A function of one number; `coupled` keeps a slope of ±1 from being taken as the coordinate itself.
-pub(super) fn one(function: &Function, coupled: bool) -> String {
+pub(in crate::opensim) fn one(function: &Function, coupled: bool) -> String {
     let Function { factor, curve } = function;
     let inner = match curve {
         Curve::Constant(value) => {
@@ -55,7 +55,7 @@ fn knots(name: &str, knots: impl Iterator<Item = (f64, f64)>) -> String {
 }
 
 /// A function of several numbers.
-pub(super) fn several(function: &FunctionOfSeveral) -> String {
+pub(in crate::opensim) fn several(function: &FunctionOfSeveral) -> String {
     match function {
         FunctionOfSeveral::Linear { slopes, intercept } => {
             let text = numbers(slopes.iter().copied().chain([*intercept]));

@@ -15,7 +15,7 @@
 //! Numbers have the fewest digits that give them back.
 
 mod coupling;
-mod function;
+pub(in crate::opensim) mod function;
 mod joint;
 
 use crate::plain::{
