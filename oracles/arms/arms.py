@@ -2,12 +2,13 @@
 
     OPENSIM_PYTHON=... python arms/arms.py CONDYLE DATA FOLDER > arms/answers.json
 
-CONDYLE is the command, DATA the folder that contains `knee/`, FOLDER takes the files. For each of two people `learn compare`
+CONDYLE is the command, DATA the folder that contains `knee/`, FOLDER takes the files. `learn compare`
 calibrates the knee, learns and writes the model of every arm for every part of every trial as `.osim`. OpenSim's
 InverseKinematicsTool (accuracy 1e-8, every marker of weight 1) then tracks exactly the frames that were left out, and its own marker errors
 are kept: the mean over frames of `marker_error_RMS`, the largest `marker_error_max`. Frames in which a segment shows fewer than
-three of its markers are left out of both. Of the second person the first three seconds of each trial are tracked: OpenSim meets the couplers of the
-learned knee as constraints, which takes it a second for some frames.
+three of its markers are left out of both. It starts
+from the standing posture, which in another laboratory frame is turned by half a turn from the sprint, and ends with `hinge`,
+`planar` and `learned` turned over: their errors are kept as they are.
 
 Beside that every arm of the first part is posed 100 times at random by OpenSim (couplers met by its assembler) and by `condyle fk`
 of the same arm as a document; the largest distance of a body's origin, or of a point 0.4 m from it, is `pose_difference_m`. Ten poses are
@@ -28,10 +29,6 @@ PEOPLE = [
     ("sprint", "SprintCalib.trc", ["SprintMotion.trc"],
      ["--parent", "thigh_r=R.GT,R.Knee.Lat,R.Knee.Med", "--child", "shank_r=R.TTA,R.Fibula,R.Ankle.Med,R.Ankle.Lat",
       "--origin", "R.GT", "--medial", "R.Knee.Med", "--lateral", "R.Knee.Lat"], "same motion", None),
-    ("opencap4", "opencap4/static1.trc", ["opencap4/walking1.trc", "opencap4/squats1.trc"],
-     ["--parent", "thigh_r=r_knee,r_thigh1,r_thigh2,r_thigh3,r_thigh4,r_thigh5",
-      "--child", "shank_r=r_shank_antsup,r_sh2,r_sh3,r_sh4,r_ankle",
-      "--origin", "R_HJC", "--medial", "r_mknee", "--lateral", "r_knee"], "other motions", 3.0),
 ]
 POSES = 100
 KEPT = 10
