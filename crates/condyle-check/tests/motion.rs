@@ -4,7 +4,9 @@ use condyle_check::motion::{MotionCheck, check};
 use condyle_diagnostics::{Diagnostic, Severity};
 use condyle_math::function::{Function, FunctionOfSeveral};
 use condyle_math::{Quat, Vec3};
-use condyle_model::component::{Correlate, Law, Region};
+use condyle_model::component::{
+    AngleNames, Angles, Correlate, Law, Region, RelativeOrientation, Signal,
+};
 use condyle_model::model::{Closure, Condition};
 use condyle_model::{CoordinateKind, Model, ModelBuilder, Range};
 use condyle_motion::{AngleUnit, Table};
@@ -319,4 +321,42 @@ fn a_law_outside_its_region_is_told_by_frame() {
     near(found.distance, (49.0 + (35.0f64 / 30.0).powi(2)).sqrt() / 2.0);
     assert_eq!((found.beyond, check.frames), (None, 5));
     assert_eq!(codes(&check)[0], (Severity::Warning, "motion/beyond-learned"));
+}
+
+/// The same for a law of the angles of a segment whose joint is no coordinate of one number.
+#[test]
+fn a_law_of_angles_outside_its_region_is_told_too() {
+    let mut b = ModelBuilder::new("knee");
+    let shank = b.segment("shank", None);
+    let (set, _) = b.hinge("knee", shank, "flexion", Vec3::Z);
+    let relative = Law::RelativeOrientation(RelativeOrientation { reference: false });
+    let turned = b.component(set, "turned", relative, vec![shank.into()]);
+    let angles = Angles { names: AngleNames::Euler("zxy".parse().unwrap()), mirrored: None };
+    let Signal::Output(angles, _) = b.component(set, "angles", Law::Angles(angles), vec![turned])
+    else {
+        panic!("a component has outputs")
+    };
+    let region = Region {
+        low: vec![0.0],
+        high: vec![90f64.to_radians()],
+        centre: vec![45f64.to_radians()],
+        inverse: vec![1.0],
+        distance: 2.0,
+    };
+    let function = FunctionOfSeveral::Linear { slopes: vec![0.01], intercept: 0.0 };
+    let law = Law::Correlate(Correlate { function, region: Some(region) });
+    let law = b.component(set, "law", law, vec![Signal::Output(angles, 0)]);
+    // What the law says moves another segment.
+    let foot = b.segment("foot", Some(shank));
+    let slide = b.translate(set, "slide", law, Vec3::X);
+    b.output(set, foot, slide);
+    let model = model(b);
+    let check = check(&model, &motion(&["flexion"], &[&[45.0], &[100.0], &[80.0]]));
+    let found = &check.extrapolated[0];
+    assert_eq!((found.frames, found.frame), (1, 1));
+    assert_eq!(found.controls[0].0.name(&model), "angles");
+    near(found.controls[0].1, 100f64.to_radians());
+    let (first, by) = found.beyond.unwrap();
+    assert_eq!(first, 0);
+    near(by, 10f64.to_radians());
 }

@@ -10,7 +10,7 @@ mod learned;
 mod limits;
 
 pub use jump::Jump;
-pub use learned::Extrapolated;
+pub use learned::{Control, Extrapolated};
 pub use limits::{Broken, Nearest};
 
 use crate::closure::{Gap, gaps};

@@ -254,7 +254,7 @@ fn motion_json(model: &Model, motion: &MotionCheck) -> Value {
             "frame": e.frame,
             "time": e.time,
             "distance": e.distance,
-            "controls": e.controls.iter().map(|(id, value)| (key(*id).clone(), json!(value)))
+            "controls": e.controls.iter().map(|(control, value)| (control.name(model), json!(value)))
                 .collect::<serde_json::Map<String, Value>>(),
         })).collect::<Vec<_>>(),
         "loops": motion.open_loops.iter().map(|o| json!({
