@@ -4,4 +4,5 @@ mod arms;
 mod functional;
 mod knee;
 mod machines;
+mod opensim;
 mod study;
