@@ -55,6 +55,12 @@ impl Lattice {
         nodes
     }
 
+    /// Of every other node, as [`super::Boundary`] counts them, the rotation with the sign that has w ≥ 0; `None` of those beyond.
+    pub(super) fn every_other_node(&self, at: [usize; 3]) -> Option<Quat> {
+        let q = unmapped(at.map(|i| self.origin + self.step * (2 * i) as f64))?;
+        (q.w >= 0.0).then(|| chart::signed(q.normalized()))
+    }
+
     /// The volume about each node in rad³; that of all rotations is 8π².
     #[must_use]
     pub fn volume(&self, q: Quat) -> f64 {

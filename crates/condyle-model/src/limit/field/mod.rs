@@ -224,7 +224,7 @@ impl Field {
         let outer = lattice.coefficients(&outer);
         let carved = carved.map(|values| lattice.coefficients(&values));
         let samples: Vec<Quat> = ground.samples.iter().map(|q| ground.chart.inward(*q)).collect();
-        Self {
+        let mut field = Self {
             small: samples.iter().map(|q| q.to_array().map(|c| c as f32)).collect(),
             samples,
             near,
@@ -235,9 +235,16 @@ impl Field {
             chart: ground.chart,
             ground,
             lattice,
-            boundary,
+            boundary: Boundary::default(),
             learned,
-        }
+        };
+        let spline = projection::Spline(&field.lattice, field.valid());
+        let mut boundary = boundary;
+        boundary.refine(&field.lattice, |q, starts| {
+            projection::project(&spline, q, starts, || None).map(|(found, _)| found)
+        });
+        field.boundary = boundary;
+        field
     }
 
     /// What it is made of.
