@@ -170,8 +170,8 @@ fn what_cannot_be_used_is_refused() {
         folder.condyle(&[&arguments[..], more].concat()).refused()
     };
     let subject = ["-o", "anna.toml"];
-    let said = scale("static.trc", &["--setup", "scale.xml", "-o", "anna.toml"]);
-    assert!(said.contains("end it in .osim"), "{said}");
+    let said = scale("static.trc", &["--setup", "scale.xml", "-o", "anna.osim"]);
+    assert!(said.contains("end it in .toml"), "{said}");
     assert!(scale("static.trc", &["-o", "anna.osim"]).contains("end it in .toml"));
     assert!(scale("static.trc", &["-o", "-", "--json"]).contains("standard output"));
     assert!(scale("gone.trc", &subject).contains("gone.trc"));
@@ -238,6 +238,27 @@ fn three(text: &str) -> [f64; 3] {
     numbers.try_into().expect("three numbers")
 }
 
+/// The same leg as a document, by the same setup: it tracks the person as the scaled file does.
+#[test]
+fn a_document_is_scaled_by_a_setup() {
+    let folder = folder("scale-document-setup");
+    folder.write("scale.xml", SETUP);
+    let run = ["scale", "leg.toml", "--setup", "scale.xml", "-o", "anna.toml", "--json"];
+    let report = folder.condyle(&run).json();
+    let [thigh, shank] = FACTORS;
+    for (body, factors) in [("thigh", [thigh, thigh, 1.0]), ("shank", [shank; 3])] {
+        for (axis, factor) in factors.into_iter().enumerate() {
+            near(number(&report["bodies"][body]["factors"][axis]), factor, 1e-9);
+        }
+    }
+    near(number(&report["placed"]["rms_m"]), 0.0, 1e-6);
+    folder
+        .condyle(&["track", "anna.toml", "static.trc", "-o", "w.csv", "--report", "r.json"])
+        .expect(0);
+    let tracked: Value = serde_json::from_str(&folder.read("r.json")).expect("a report");
+    assert!(number(&tracked["rms_m"]) < 1e-5, "{tracked}");
+}
+
 #[test]
 fn what_a_setup_cannot_do_is_said() {
     let folder = folder("scale-setup-wrong");
@@ -250,7 +271,8 @@ fn what_a_setup_cannot_do_is_said() {
     let setup = ["--setup", "scale.xml"];
     let with = |more: &[&'static str]| [more, &setup[..]].concat();
     says(&with(&["leg.osim", "-o", "anna.toml"]), "end it in .osim");
-    says(&with(&["leg.toml", "-o", "anna.osim"]), "scales an .osim");
+    says(&with(&["leg.toml", "-o", "anna.osim"]), "end it in .toml");
+    says(&with(&["leg.toml", "--mass", "70", "-o", "anna.toml"]), "have no masses");
     says(&["leg.osim", "-o", "anna.osim"], "--static");
     says(&["leg.osim", "--setup", "leg.osim", "-o", "a.osim"], "there is no <ScaleTool>");
     says(&["leg.osim", "--static", "static.trc", "--mass", "70", "-o", "a.toml"], "--setup");
