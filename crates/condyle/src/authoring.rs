@@ -3,7 +3,7 @@
 //!
 //! An [`Authoring`] holds a document as it was read last, with all texts that it includes. Before it writes, it looks
 //! whether a file was changed by another program meanwhile, and then writes nothing. What is written can be undone: the
-//! file gets back the bytes that it had. Of a [`shipped`](crate::shipped) model the first edit makes a file of the
+//! file gets back the bytes that it had. Of a model in [`crate::shipped`] the first edit makes a file of the
 //! user's, which includes the model and gives anew what was changed.
 //!
 //! ```

@@ -179,7 +179,7 @@ pub struct SubjectModel {
 /// Bodies are segments by name; a mass is left, as a model has none. No marker is fixed.
 ///
 /// # Errors
-/// As [`scale`].
+/// As [`scale()`].
 pub fn scale_model(model: &Model, asked: &Asked<'_>) -> Result<SubjectModel, Error> {
     let mut warnings = vec![];
     let (mut factors, mut measurements) = (Factors::new(), vec![]);
