@@ -206,26 +206,19 @@ impl Lattice {
     fn value_at(&self, spline: &[f32], x: [f64; 3]) -> (f64, usize) {
         let ([i, j, k], [a, b, c]) = self.cell(x);
         let edge = self.edge;
-        // All rows are asked of memory before any is used: most of the time of a rotation that no cache holds is waiting for
-        // them.
-        let mut rows = [[0.0f32; 4]; 16];
-        for n in 0..4 {
-            for m in 0..4 {
-                let start = ((k + n - 1) * edge + j + m - 1) * edge + i - 1;
-                if let Some(row) = spline.get(start..start + 4).and_then(|row| row.first_chunk()) {
-                    rows[4 * n + m] = *row;
-                }
-            }
-        }
         let (u, v, w) = (weights(a), weights(b), weights(c));
         let mut sum = 0.0;
-        for n in 0..4 {
+        for (n, w) in w.into_iter().enumerate() {
             let mut plane = 0.0;
-            for m in 0..4 {
-                let [p, q, r, s] = rows[4 * n + m].map(f64::from);
-                plane += v[m] * ((p * u[0] + q * u[1]) + (r * u[2] + s * u[3]));
+            for (m, v) in v.into_iter().enumerate() {
+                let start = ((k + n - 1) * edge + j + m - 1) * edge + i - 1;
+                if let Some([p, q, r, s]) = spline.get(start..start + 4) {
+                    let row = (f64::from(*p) * u[0] + f64::from(*q) * u[1])
+                        + (f64::from(*r) * u[2] + f64::from(*s) * u[3]);
+                    plane += v * row;
+                }
             }
-            sum += w[n] * plane;
+            sum += w * plane;
         }
         (sum, (k * edge + j) * edge + i)
     }
