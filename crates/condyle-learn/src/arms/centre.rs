@@ -1,10 +1,8 @@
 //! What arms take from recordings, and how it becomes another person's.
 
 use crate::calibration::{Cluster, FreeJoint};
-use crate::coupling::{LawFunction, Laws, Samples, Settings, learn};
+use crate::coupling::{LawFunction, Laws, Samples, Settings, SizeRatios, learn, scaled};
 use condyle_diagnostics::Error;
-use condyle_math::function::FunctionOfSeveral;
-use condyle_math::function::MultivariatePolynomial;
 use condyle_model::component::Region;
 use condyle_motion::Recording;
 
@@ -30,45 +28,6 @@ pub struct Sizes {
     pub length: f64,
     /// From the medial to the lateral end.
     pub width: f64,
-}
-
-/// How a law becomes that of another person, whose thigh is s₁ times as long and s₂ times as wide.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scaling {
-    /// All coefficients by (s₁ + s₂)/2: equation 3 of Pronost et al. 2010.
-    Pronost2010,
-    /// Those of y, along the thigh, by s₁, of z, across it, by s₂, of x by their mean.
-    PerAxis,
-}
-
-impl Scaling {
-    /// The word for it in tables.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Pronost2010 => "equation 3",
-            Self::PerAxis => "per axis",
-        }
-    }
-
-    /// The factors along x, y and z from one person to another.
-    ///
-    /// ```
-    /// use condyle_learn::arms::{Scaling, Sizes};
-    /// let [one, other] = [Sizes { length: 0.4, width: 0.1 }, Sizes { length: 0.44, width: 0.09 }];
-    /// let factors = Scaling::PerAxis.factors(one, other);
-    /// assert!((factors[0] - 1.0).abs() < 1e-12 && (factors[1] - 1.1).abs() < 1e-12);
-    /// assert!((factors[2] - 0.9).abs() < 1e-12);
-    /// ```
-    #[must_use]
-    pub fn factors(self, from: Sizes, to: Sizes) -> [f64; 3] {
-        let [along, across] = [to.length / from.length, to.width / from.width];
-        let both = 0.5 * (along + across);
-        match self {
-            Self::Pronost2010 => [both; 3],
-            Self::PerAxis => [both, along, across],
-        }
-    }
 }
 
 impl Centre {
@@ -115,7 +74,7 @@ impl Centre {
     /// The centre of a person whose places are so many times as far along x, y and z. The angles at which it was learned stay.
     #[must_use]
     pub fn scaled(&self, factors: [f64; 3]) -> Self {
-        let axis = |k: usize| times(&self.laws[k], factors[k]);
+        let axis = |k: usize| scaled(&self.laws[k], factors[k]);
         Self {
             laws: [axis(0), axis(1), axis(2)],
             mean: [0, 1, 2].map(|k| self.mean[k] * factors[k]),
@@ -125,33 +84,22 @@ impl Centre {
     }
 }
 
-/// A law whose values are so many times as large.
-fn times(law: &LawFunction, factor: f64) -> LawFunction {
-    match law {
-        LawFunction::Several(FunctionOfSeveral::Linear { slopes, intercept }) => {
-            LawFunction::Several(FunctionOfSeveral::Linear {
-                slopes: slopes.iter().map(|slope| slope * factor).collect(),
-                intercept: intercept * factor,
-            })
-        }
-        LawFunction::Several(FunctionOfSeveral::Polynomial(p)) => {
-            let all: Vec<f64> = p.coefficients().iter().map(|c| c * factor).collect();
-            // The same order and dimension take as many coefficients.
-            let scaled = MultivariatePolynomial::up_to_order(p.dimension(), p.order(), &all);
-            scaled.map_or_else(
-                |_| law.clone(),
-                |p| LawFunction::Several(FunctionOfSeveral::Polynomial(p)),
-            )
-        }
-        LawFunction::Sum { intercept, parts } => {
-            let mut parts = parts.clone();
-            parts.iter_mut().for_each(|part| part.stretch(factor, 1.0));
-            LawFunction::Sum { intercept: intercept * factor, parts }
-        }
-    }
-}
-
 impl Sizes {
+    /// How much larger another person is.
+    ///
+    /// ```
+    /// use condyle_learn::arms::Sizes;
+    /// use condyle_learn::coupling::ScaleRule;
+    /// let [one, other] = [Sizes { length: 0.4, width: 0.1 }, Sizes { length: 0.44, width: 0.09 }];
+    /// let factors = one.ratios_to(other).factors(ScaleRule::PerAxis);
+    /// assert!((factors[0] - 1.0).abs() < 1e-12 && (factors[1] - 1.1).abs() < 1e-12);
+    /// assert!((factors[2] - 0.9).abs() < 1e-12);
+    /// ```
+    #[must_use]
+    pub fn ratios_to(self, other: Self) -> SizeRatios {
+        SizeRatios { along: other.length / self.length, across: other.width / self.width }
+    }
+
     /// The sizes of a person from a standing trial; `None` where it does not show the marker at the parent's origin and both ends.
     #[must_use]
     pub fn of(joint: &FreeJoint, standing: &Recording) -> Option<Self> {

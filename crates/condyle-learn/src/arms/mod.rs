@@ -34,6 +34,6 @@ mod leg;
 mod planar;
 
 pub use arm::Arm;
-pub use centre::{Centre, Scaling, Sizes};
+pub use centre::{Centre, Sizes};
 pub use leg::Leg;
 pub use planar::{PLANAR_LENGTH, planar};

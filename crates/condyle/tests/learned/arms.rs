@@ -1,8 +1,8 @@
 //! Arms of a comparison on trials whose truth is known: what an arm can be, it leaves nothing of; what it cannot be, it leaves.
 
-use condyle::learn::arms::{Arm, Centre, Leg, Scaling, Sizes};
+use condyle::learn::arms::{Arm, Centre, Leg, Sizes};
 use condyle::learn::calibration::FreeJoint;
-use condyle::learn::coupling::{Groups, LawFunction};
+use condyle::learn::coupling::{Groups, LawFunction, ScaleRule};
 use condyle::learning::arms::{
     Compared, Gain, How, Person, Question, Residuals, Trial, compare, gains, groups, markdown,
 };
@@ -217,7 +217,7 @@ fn a_law_scaled_per_axis_is_that_of_a_person_who_is_larger_per_axis() {
     let knee = |own: &Leg| {
         let is_other = (own.standing()[1] - one.standing()[1]).abs() > 1e-9;
         let (_, to) = leg(0.46, 0.08);
-        let factors = Scaling::PerAxis.factors(from, to);
+        let factors = from.ratios_to(to).factors(ScaleRule::PerAxis);
         let centre = if is_other { base.scaled(factors) } else { base.clone() };
         own.arm(Arm::Learned, Some(&centre)).unwrap()
     };

@@ -5,8 +5,8 @@ use super::person::{Followed, Person};
 use super::residuals::{Residuals, frames_of};
 use crate::tracking::Request;
 use condyle_diagnostics::{Diagnostic, Error, Read};
-use condyle_learn::arms::{Arm, Centre, Scaling};
-use condyle_learn::coupling::{Groups, Samples, Settings};
+use condyle_learn::arms::{Arm, Centre};
+use condyle_learn::coupling::{Groups, Samples, ScaleRule, Settings};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -50,10 +50,10 @@ impl Question {
 
     /// How laws of other persons are scaled.
     #[must_use]
-    pub fn scaling(self) -> Option<Scaling> {
+    pub fn scaling(self) -> Option<ScaleRule> {
         match self {
-            Self::OtherPersons => Some(Scaling::Pronost2010),
-            Self::OtherPersonsPerAxis => Some(Scaling::PerAxis),
+            Self::OtherPersons => Some(ScaleRule::Mean),
+            Self::OtherPersonsPerAxis => Some(ScaleRule::PerAxis),
             _ => None,
         }
     }
@@ -181,9 +181,9 @@ impl Bench<'_> {
     /// How many times as large the places of a person are in a source.
     fn factors(&self, source: &Source, person: usize) -> [f64; 3] {
         let Some((to, per_axis)) = source.scaled else { return [1.0; 3] };
-        let scaling = if per_axis { Scaling::PerAxis } else { Scaling::Pronost2010 };
+        let rule = if per_axis { ScaleRule::PerAxis } else { ScaleRule::Mean };
         match (self.persons[person].sizes, self.persons[to].sizes) {
-            (Some(from), Some(to)) => scaling.factors(from, to),
+            (Some(from), Some(to)) => from.ratios_to(to).factors(rule),
             _ => [1.0; 3],
         }
     }

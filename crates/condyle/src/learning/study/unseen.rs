@@ -4,8 +4,8 @@ use super::{Plan, Run};
 use crate::learning::arms::Residuals;
 use crate::tracking::Request;
 use condyle_diagnostics::Error;
-use condyle_learn::arms::{Arm, Centre, Leg, Scaling};
-use condyle_learn::coupling::LawFunction;
+use condyle_learn::arms::{Arm, Centre, Leg};
+use condyle_learn::coupling::{LawFunction, ScaleRule};
 use condyle_learn::study::{Kind, Person, Skin};
 use condyle_math::function::FunctionOfSeveral;
 use condyle_model::Model;
@@ -77,11 +77,12 @@ fn knees(runs: &[Run], run: &Run, leg: &Leg, motion: usize) -> Result<Vec<Knee>,
     };
     learned(OTHER_MOTION, other)?;
     if let Some(donor) = donor(runs, run.person, run.skin) {
-        for (name, scaling) in SCALED.iter().zip([Scaling::Pronost2010, Scaling::PerAxis]) {
-            let factors = scaling.factors(donor.sizes, run.sizes);
+        let ratios = donor.sizes.ratios_to(run.sizes);
+        for (name, rule) in SCALED.iter().zip([ScaleRule::Mean, ScaleRule::PerAxis]) {
+            let factors = ratios.factors(rule);
             learned(name, &donor.learned[motion].centre.scaled(factors))?;
         }
-        let factors = Scaling::PerAxis.factors(donor.sizes, run.sizes);
+        let factors = ratios.factors(ScaleRule::PerAxis);
         let scaled = donor.learned[motion].centre.scaled(factors);
         learned(SCALED[2], &placed(scaled, leg.standing()))?;
     }

@@ -1,6 +1,7 @@
 //! All numbers of a comparison, in JSON.
 
-use condyle::learn::arms::{Arm, Scaling};
+use condyle::learn::arms::Arm;
+use condyle::learn::coupling::ScaleRule;
 use condyle::learning::arms::{Compared, Person, gains, groups};
 use serde_json::{Map, Value, json};
 
@@ -86,8 +87,8 @@ pub(super) fn json(
                 Some(json!({
                     "from": one.name,
                     "to": other.name,
-                    "equation_3": Scaling::Pronost2010.factors(from, to),
-                    "per_axis": Scaling::PerAxis.factors(from, to),
+                    "equation_3": from.ratios_to(to).factors(ScaleRule::Mean),
+                    "per_axis": from.ratios_to(to).factors(ScaleRule::PerAxis),
                 }))
             },
         )
