@@ -4,7 +4,7 @@ mod report;
 mod subjects;
 
 use super::coupling::{basis, ridge};
-use super::joint::segment;
+use super::joint::Landmarks;
 use crate::commands::{Limits, Outcome, ZerosArgument, zeros};
 use crate::failure::{Failure, warn_about, warned};
 use crate::output;
@@ -43,27 +43,8 @@ pub(super) struct Compare {
     /// varieties, sub_motion.
     #[arg(long, value_name = "GROUPS.csv")]
     groups: Option<PathBuf>,
-    /// The joint's name; its coordinates begin with it.
-    #[arg(long, default_value = "knee_r")]
-    name: String,
-    /// The parent segment and its markers, three or more.
-    #[arg(long, value_name = "SEGMENT=M1,M2,...", default_value = "thigh_r=RGT,RLFE,RMFE", value_parser = segment)]
-    parent: (String, Vec<String>),
-    /// The child segment and its markers, three or more.
-    #[arg(long, value_name = "SEGMENT=M1,M2,...", default_value = "shank_r=RTT,RFH,RMEDMAL,RLATMAL", value_parser = segment)]
-    child: (String, Vec<String>),
-    /// The marker at the parent's origin, above the joint.
-    #[arg(long, value_name = "MARKER", default_value = "RGT")]
-    origin: String,
-    /// The marker at the medial end of the joint.
-    #[arg(long, value_name = "MARKER", default_value = "RMFE")]
-    medial: String,
-    /// The marker at the lateral end of the joint.
-    #[arg(long, value_name = "MARKER", default_value = "RLFE")]
-    lateral: String,
-    /// The joint is on the left side.
-    #[arg(long)]
-    left: bool,
+    #[command(flatten)]
+    landmarks: Landmarks,
     /// Terms of the laws: linear, polynomial:2 to polynomial:6, or spline:3 to spline:20.
     #[arg(long, value_name = "BASIS", default_value = "linear", value_parser = basis)]
     basis: Basis,
@@ -190,14 +171,15 @@ impl Compare {
     }
 
     fn all_subjects(&self) -> Result<Vec<Subject>, Failure> {
+        let joint = &self.landmarks;
         let base = Subject {
             name: String::new(),
             standing: self.standing.clone().unwrap_or_default(),
-            parent: self.parent.clone(),
-            child: self.child.clone(),
-            origin: self.origin.clone(),
-            ends: [self.medial.clone(), self.lateral.clone()],
-            left: self.left,
+            parent: joint.parent.clone(),
+            child: joint.child.clone(),
+            origin: joint.origin.clone(),
+            ends: [joint.medial.clone(), joint.lateral.clone()],
+            left: joint.left,
         };
         match &self.subjects {
             None => Ok(vec![base]),
@@ -225,7 +207,7 @@ impl Compare {
         for subject in subjects {
             let path = &subject.standing;
             let standing = warned(path, open::recording_with(path, zeros(self.zeros))?);
-            persons.push(subject.person(&self.name, &standing)?);
+            persons.push(subject.person(&self.landmarks.name, &standing)?);
         }
         for path in &self.trials {
             let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();

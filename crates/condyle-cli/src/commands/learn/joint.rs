@@ -12,6 +12,32 @@ use condyle::math::EulerOrder;
 use condyle::open;
 use std::path::{Path, PathBuf};
 
+/// The joint that is calibrated: the markers of its segments and the landmarks of its frame.
+#[derive(Clone, Debug, Args)]
+pub(super) struct Landmarks {
+    /// The joint's name; its coordinates begin with it.
+    #[arg(long, default_value = "knee_r")]
+    pub(super) name: String,
+    /// The parent segment and its markers, three or more.
+    #[arg(long, value_name = "SEGMENT=M1,M2,...", default_value = "thigh_r=RGT,RLFE,RMFE", value_parser = segment)]
+    pub(super) parent: (String, Vec<String>),
+    /// The child segment and its markers, three or more.
+    #[arg(long, value_name = "SEGMENT=M1,M2,...", default_value = "shank_r=RTT,RFH,RMEDMAL,RLATMAL", value_parser = segment)]
+    pub(super) child: (String, Vec<String>),
+    /// The marker at the parent's origin, above the joint.
+    #[arg(long, value_name = "MARKER", default_value = "RGT")]
+    pub(super) origin: String,
+    /// The marker at the medial end of the joint.
+    #[arg(long, value_name = "MARKER", default_value = "RMFE")]
+    pub(super) medial: String,
+    /// The marker at the lateral end of the joint.
+    #[arg(long, value_name = "MARKER", default_value = "RLFE")]
+    pub(super) lateral: String,
+    /// The joint is on the left side.
+    #[arg(long)]
+    pub(super) left: bool,
+}
+
 /// Make a model of two segments with a free joint between them from a standing trial: with it `learn coupling` tracks.
 ///
 /// The joint's frame comes from landmarks: z along its medial and lateral end to the right, y toward the marker at the parent's
@@ -22,27 +48,8 @@ pub(super) struct Joint {
     /// The standing trial.
     #[arg(value_name = "STATIC")]
     trial: PathBuf,
-    /// The joint's name; its coordinates begin with it.
-    #[arg(long, default_value = "knee_r")]
-    name: String,
-    /// The parent segment and its markers, three or more.
-    #[arg(long, value_name = "SEGMENT=M1,M2,...", default_value = "thigh_r=RGT,RLFE,RMFE", value_parser = segment)]
-    parent: (String, Vec<String>),
-    /// The child segment and its markers, three or more.
-    #[arg(long, value_name = "SEGMENT=M1,M2,...", default_value = "shank_r=RTT,RFH,RMEDMAL,RLATMAL", value_parser = segment)]
-    child: (String, Vec<String>),
-    /// The marker at the parent's origin, above the joint.
-    #[arg(long, value_name = "MARKER", default_value = "RGT")]
-    origin: String,
-    /// The marker at the medial end of the joint.
-    #[arg(long, value_name = "MARKER", default_value = "RMFE")]
-    medial: String,
-    /// The marker at the lateral end of the joint.
-    #[arg(long, value_name = "MARKER", default_value = "RLFE")]
-    lateral: String,
-    /// The joint is on the left side.
-    #[arg(long)]
-    left: bool,
+    #[command(flatten)]
+    landmarks: Landmarks,
     /// The axes of both segments: a document of `kind = "recipe"` whose reference is the parent, or a shipped one such as knee-isb. The angles
     /// of the standing person are not 0 then.
     #[arg(long, value_name = "R.toml")]
@@ -107,13 +114,14 @@ impl Joint {
         let Ok(angles) = <[String; 3]>::try_from(self.angles.clone()) else {
             return Err(Failure::new("--angles needs three names"));
         };
+        let landmarks = self.landmarks;
         let joint = FreeJoint {
-            name: self.name,
-            segments: [self.parent.0, self.child.0],
-            markers: [self.parent.1, self.child.1],
-            origin: self.origin,
-            ends: [self.medial, self.lateral],
-            left: self.left,
+            name: landmarks.name,
+            segments: [landmarks.parent.0, landmarks.child.0],
+            markers: [landmarks.parent.1, landmarks.child.1],
+            origin: landmarks.origin,
+            ends: [landmarks.medial, landmarks.lateral],
+            left: landmarks.left,
             order: self.order,
             angles,
             axes,

@@ -562,6 +562,13 @@ fn less(studied: &Studied) -> Sheet {
     sheet
 }
 
+/// S3's sums over the trials that a knee followed: mean and standard deviation, in metres.
+fn sums(studied: &Studied, skin: Skin, gait: bool, knee: &str) -> Cell {
+    let all = studied.with(skin).flat_map(|run| &run.unseen);
+    let all = all.filter(|f| f.gait == gait && f.knee == knee);
+    spread(&all.map(super::Followed::sum).collect::<Vec<_>>(), 3)
+}
+
 fn table_4(studied: &Studied) -> Sheet {
     let head = [
         "markers",
@@ -580,11 +587,7 @@ fn table_4(studied: &Studied) -> Sheet {
     let mut sheet = Sheet::new("table4", title, &head);
     for skin in [Skin::Rigid, Skin::Moving] {
         for (motion, gait) in [true, false].into_iter().enumerate() {
-            let sums = |knee: &str| {
-                let all = studied.with(skin).flat_map(|run| &run.unseen);
-                let all = all.filter(|f| f.gait == gait && f.knee == knee);
-                spread(&all.map(super::Followed::sum).collect::<Vec<_>>(), 3)
-            };
+            let sums = |knee: &str| sums(studied, skin, gait, knee);
             let more = |knee: &str| {
                 let less = reductions(studied, skin, gait, knee, Arm::Learned.name());
                 spread(&less.iter().map(|less| -less).collect::<Vec<_>>(), 0)
@@ -627,11 +630,7 @@ fn table_5(studied: &Studied) -> Sheet {
     let mut sheet = Sheet::new("table5", title, &head);
     for skin in [Skin::Rigid, Skin::Moving] {
         for (motion, gait) in [true, false].into_iter().enumerate() {
-            let sums = |knee: &str| {
-                let all = studied.with(skin).flat_map(|run| &run.unseen);
-                let all = all.filter(|f| f.gait == gait && f.knee == knee);
-                spread(&all.map(super::Followed::sum).collect::<Vec<_>>(), 3)
-            };
+            let sums = |knee: &str| sums(studied, skin, gait, knee);
             let (own, other) = (sums(Arm::Learned.name()), sums(OTHER_MOTION));
             let more = reductions(studied, skin, gait, OTHER_MOTION, Arm::Learned.name());
             let [by_gait, by_crouch] = if gait { [own, other] } else { [other, own] };
