@@ -68,20 +68,51 @@ class Panel {
   private listed: Listed | null = null;
   private all = false;
   private readonly open = new Set<string>();
-  private find = "";
   private handles = false;
   private readonly handle: Handle;
+  /** Lists that are asked for and have not come. */
+  private loading = 0;
+  // What a person may be typing in or is on stays while the rest is built anew.
+  private readonly where = element("p", { class: "soft" });
+  private readonly undo = element("button", { id: "text-undo", disabled: true, onclick: () => void this.send("undo", {}) }, "undo in file");
+  private readonly redo = element("button", { id: "text-redo", disabled: true, onclick: () => void this.send("redo", {}) }, "redo");
+  private readonly search = element("input", { type: "search", placeholder: "find a number", "aria-label": "find a number" });
+  private readonly list = element("div");
+  private readonly add = element("div");
+  /** What new parts are added to, when that was built. */
+  private added: string | null = null;
+  /** Fields that go because others take their place are not left by a person. */
+  private building = false;
 
   constructor(private readonly app: App) {
     this.handle = new Handle(app);
+    this.search.addEventListener("input", () => this.build());
+    const every = element("input", { type: "checkbox" });
+    every.addEventListener("change", () => {
+      this.all = every.checked;
+      this.build();
+    });
+    const handles = element("input", { type: "checkbox", id: "handles" });
+    handles.addEventListener("change", () => {
+      this.handles = handles.checked;
+      this.build();
+    });
+    const first = element("div", {}, this.undo, " ", this.redo, " ", element("label", {}, every, " all of the model"), " ", element("label", {}, handles, " handles"));
+    this.root.replaceChildren(element("h2", {}, "the model’s text"), this.where, first, this.search, this.list, this.add);
+    this.root.hidden = true;
   }
 
-  /** Reads the list anew. */
+  /** Reads the list anew; the newest answer counts. */
   async load(): Promise<void> {
+    const mine = ++this.loading;
+    this.root.ariaBusy = "true";
     const response = await fetch("editable.json", { cache: "no-store" });
-    if (!response.ok) return;
-    this.listed = (await response.json()) as Listed;
-    if (this.listed.fault) this.app.say([said(this.listed.fault)]);
+    const listed = response.ok ? ((await response.json()) as Listed) : null;
+    if (mine !== this.loading) return;
+    this.root.ariaBusy = "false";
+    if (!listed) return;
+    this.listed = listed;
+    if (listed.fault) this.app.say([said(listed.fault)]);
     this.build();
   }
 
@@ -94,44 +125,36 @@ class Panel {
       const name = shown(row.path.filter((step, at) => typeof step === "string" || at < row.path.length - 1));
       groups.set(name, [...(groups.get(name) ?? []), row]);
     }
-    const search = element("input", { type: "search", placeholder: "find a number", "aria-label": "find a number", value: this.find });
-    search.addEventListener("change", () => {
-      this.find = search.value;
-      this.build();
-    });
-    const every = element("input", { type: "checkbox", checked: this.all });
-    every.addEventListener("change", () => {
-      this.all = every.checked;
-      this.build();
-    });
-    const handles = element("input", { type: "checkbox", id: "handles", checked: this.handles });
-    handles.addEventListener("change", () => {
-      this.handles = handles.checked;
-      this.hold(listed);
-    });
     this.hold(listed);
     const most = 120;
-    const list = [...groups].slice(0, most).map(([name, group]) => this.group(name, group));
-    const where = listed.there ? listed.file : `${listed.file} (made by the first edit)`;
-    this.root.replaceChildren(
-      element("h2", {}, "the model’s text"),
-      element("p", { class: "soft" }, where),
-      element(
-        "div",
-        {},
-        element("button", { id: "text-undo", disabled: !listed.undo, onclick: () => void this.send("undo", {}) }, "undo in file"),
-        " ",
-        element("button", { id: "text-redo", disabled: !listed.redo, onclick: () => void this.send("redo", {}) }, "redo"),
-        " ",
-        element("label", {}, every, " all of the model"),
-        " ",
-        element("label", {}, handles, " handles"),
-      ),
-      search,
-      ...list,
+    const typing = this.typing();
+    this.building = true;
+    this.list.replaceChildren(
+      ...[...groups].slice(0, most).map(([name, group]) => this.group(name, group)),
       groups.size > most ? element("p", { class: "soft" }, `and ${groups.size - most} more: find them by name`) : "",
-      this.adding(),
     );
+    this.building = false;
+    if (typing) this.type(typing);
+    this.where.textContent = listed.there ? listed.file : `${listed.file} (made by the first edit)`;
+    [this.undo.disabled, this.redo.disabled] = [!listed.undo, !listed.redo];
+    const added = `${this.app.selected} ${this.app.set}`;
+    if (added !== this.added) this.add.replaceChildren(this.adding());
+    this.added = added;
+    this.root.hidden = false;
+  }
+
+  /** The number that a person is typing. */
+  private typing(): { name: string; text: string } | null {
+    const at = document.activeElement;
+    const name = at instanceof HTMLInputElement && this.list.contains(at) ? at.dataset["number"] : undefined;
+    return name === undefined ? null : { name, text: (at as HTMLInputElement).value };
+  }
+
+  private type({ name, text }: { name: string; text: string }): void {
+    const field = [...this.list.querySelectorAll("input")].find((field) => field.dataset["number"] === name);
+    if (!field) return;
+    field.value = text;
+    field.focus({ preventScroll: true });
   }
 
   /** Shows handles of the selected segment’s place in its parent, if its text gives one. */
@@ -150,6 +173,7 @@ class Panel {
     const segment = selected === null ? null : (model?.about.segments[selected]?.name ?? null);
     const joints = set === null ? null : (model?.about.sets[set] ?? null);
     const found: Row[] = [];
+    const find = this.search.value;
     for (const value of listed.values) {
       for (const path of value.mirrored ? [value.path, value.mirrored] : [value.path]) {
         const [family, name] = path;
@@ -157,8 +181,8 @@ class Panel {
           (family === "segment" && name === segment) ||
           ((family === "joint" || family === "joint_set") && name === joints) ||
           (segment === null && joints === null && family === "constants");
-        const named = this.find !== "" && shown(path).includes(this.find);
-        if (this.find === "" ? mine || (this.all && path === value.path) : named) found.push({ value, path });
+        const named = find !== "" && shown(path).includes(find);
+        if (find === "" ? mine || (this.all && path === value.path) : named) found.push({ value, path });
       }
     }
     return found;
@@ -182,10 +206,16 @@ class Panel {
     const field = element("input", { type: "number", step: "any", value: String(value.value), "aria-label": `${name} in ${value.unit || "its unit"}`, "data-number": name });
     field.title = value.written;
     if (value.ways.length < 2) {
-      field.addEventListener("change", () => {
-        if (field.value !== "" && Number.isFinite(Number(field.value))) void this.set(path, Number(field.value));
-        else field.value = String(value.value);
-      });
+      // Asked for once, whether it is by the key or by leaving: a field that was built anew under what is typed fires
+      // no change.
+      let asked = value.value;
+      const changed = () => {
+        const typed = Number(field.value);
+        if (field.value === "" || !Number.isFinite(typed)) field.value = String(asked);
+        else if (typed !== asked) void this.set(path, (asked = typed));
+      };
+      field.addEventListener("keydown", (event) => event.key === "Enter" && changed());
+      field.addEventListener("blur", () => !this.building && changed());
       return element("span", {}, field);
     }
     const way = element("select", { "aria-label": `how ${name} is changed` });
