@@ -40,6 +40,13 @@ pub fn read(model: Option<&Model>, name: &str, bytes: &[u8]) -> Result<Given, Fa
         }
         "json" => {
             let read = poses::read(bytes).map_err(wrong)?;
+            if read.value.are_keys() {
+                // The page has their file, and asks for what is between them.
+                let keys: Value = serde_json::from_slice(bytes).unwrap_or(Value::Null);
+                let warnings = warned(&read.warnings);
+                let text = json!({ "motion": null, "keys": keys, "warnings": warnings });
+                return Ok(Given::Motion(Answer::of(&text)));
+            }
             let resolved = read.value.resolve(needed()?).map_err(wrong)?;
             let shown = Shown::of(name.to_owned(), resolved.motion);
             Ok(Given::Motion(answered(&shown, &read.warnings)))
