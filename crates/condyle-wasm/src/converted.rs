@@ -71,9 +71,8 @@ pub fn converted(name: &str, bytes: &[u8], skeleton: Option<&[u8]>) -> Result<An
     {
         model.set_name(stem);
     }
-    let motion = motion.map(|motion| {
-        Shown::of(name.to_owned(), motion).to_json(|numbers| answer.floats(numbers))
-    });
+    let motion = motion
+        .map(|motion| Shown::of(name.to_owned(), motion).to_json(|numbers| answer.floats(numbers)));
     if let Some(recording) = &mut recording {
         warnings.extend(recording.settle_zeros(Zeros::Told));
         answer.numbers = trc::write(recording, name).map_err(wrong)?.into_bytes();
@@ -131,7 +130,9 @@ mod tests {
 
     #[test]
     fn what_is_of_no_format_is_refused() {
-        for (name, bytes) in [("a.xyz", &b"Dear Sir"[..]), ("a.osim", b"<x"), ("a.amc", b"1"), ("", b"")] {
+        for (name, bytes) in
+            [("a.xyz", &b"Dear Sir"[..]), ("a.osim", b"<x"), ("a.amc", b"1"), ("", b"")]
+        {
             assert!(converted(name, bytes, None).is_err(), "{name}");
         }
     }

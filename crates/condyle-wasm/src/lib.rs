@@ -27,6 +27,7 @@ mod checked;
 mod converted;
 mod described;
 mod dragged;
+mod goals;
 mod keyed;
 mod network;
 #[cfg(all(target_arch = "wasm32", feature = "readers"))]

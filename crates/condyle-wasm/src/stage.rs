@@ -24,6 +24,8 @@ pub struct Stage {
     pub actors: Vec<Actor>,
     /// What is dragged now.
     pub(crate) drag: Option<Goals>,
+    /// The goals that are kept.
+    pub(crate) goals: Option<Goals>,
     /// The key poses that are on the timeline.
     pub(crate) keyed: Option<Keyed>,
 }
@@ -54,8 +56,17 @@ impl Stage {
         });
         let back = back.collect();
         let reaches = Reaches::default();
-        let mut stage =
-            Self { model, program, figure, reaches, back, actors: vec![], drag: None, keyed: None };
+        let mut stage = Self {
+            model,
+            program,
+            figure,
+            reaches,
+            back,
+            actors: vec![],
+            drag: None,
+            goals: None,
+            keyed: None,
+        };
         stage.add_actor();
         stage
     }
@@ -110,6 +121,11 @@ impl Stage {
                 Ok(Answer::default())
             }
             "actor" => Ok(Answer::of(&Value::from(self.add_actor()))),
+            "goals" => self.goals(&question),
+            "lacking" => {
+                let actor = question["actor"].as_u64().unwrap_or(0) as usize;
+                Ok(Answer::of(&Value::from(self.lacking(actor))))
+            }
             "keys" => self.keys(&question),
             "keyed" => self.keyed(&question),
             "check" => self.checked(&question),
