@@ -6,6 +6,7 @@ import { Curves } from "./curves";
 import { byId, element } from "./dom";
 import { Figure, Shape } from "./figure";
 import { frames } from "./files";
+import { GoalPanel } from "./goals";
 import { History } from "./history";
 import { Inspector } from "./inspector";
 import { Keys } from "./keys";
@@ -29,6 +30,7 @@ export class App {
   readonly sliders: Sliders;
   readonly inspector: Inspector;
   readonly keys: Keys;
+  readonly goals: GoalPanel;
   model: Model | null = null;
   title = "condyle";
   motions: Motion[] = [];
@@ -64,6 +66,7 @@ export class App {
     this.keys = new Keys(this);
     this.history.parts.push({ get: () => this.keys.list, set: (list: Keys["list"]) => this.keys.restore(list) });
     byId("coordinates").before(this.keys.root);
+    this.goals = new GoalPanel(this);
     byId("coordinates").append(this.sliders.root);
     byId("bottom").append(this.curves.root, this.timeline.root);
     this.view.content.add(this.signs.group, this.markers.group);
@@ -105,6 +108,7 @@ export class App {
     this.view.themed();
     if (!kept) this.view.look(this.box());
     this.keys.opened(kept);
+    this.goals.opened(kept);
     this.history.begin(model.actors[0]!.asked);
     byId("waiting").hidden = true;
     this.motionsChanged();
@@ -127,6 +131,8 @@ export class App {
   took(taken: Taken, name: string): void {
     if (taken.model) {
       this.open(taken.model, name.replace(/\.[^.]*$/, ""), taken.motion ? [taken.motion] : []);
+    } else if (taken.goals) {
+      this.goals.change(taken.goals);
     } else if (taken.keys) {
       this.keys.change(taken.keys);
       this.timed();

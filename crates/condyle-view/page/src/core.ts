@@ -1,6 +1,7 @@
 // The evaluator: condyle compiled to WebAssembly, with the memory that it shares with the page.
 // What its functions do is written in crates/condyle-wasm/src/border.rs.
 
+import type { Goals } from "./goals";
 import type { Key } from "./keys";
 import { unpack } from "./unpack";
 
@@ -117,6 +118,8 @@ export interface Taken {
   motion: Motion | null;
   /** Key poses, as their file has them. */
   keys?: Key[];
+  /** Goals of a pose. */
+  goals?: Goals;
   warnings: Said[];
 }
 

@@ -174,6 +174,120 @@ await test("keys are moved, deleted and played, and undone", async () => {
   await page.close();
 });
 
+/** The pose of the page by the names of coordinates, and what is out of its range. */
+async function posed(page) {
+  return page.evaluate(() => {
+    const { model } = window.condyle;
+    const { effective } = model.actors[0];
+    const single = model.about.coordinates.filter((c) => c.kind !== "orientation");
+    return {
+      values: Object.fromEntries(single.map((c) => [c.key, effective[c.place]])),
+      broken: single.filter((c) => c.enforced && ((c.lower ?? -Infinity) - 1e-9 > effective[c.place] || (c.upper ?? Infinity) + 1e-9 < effective[c.place])).map((c) => c.key),
+    };
+  });
+}
+
+await test("goals are met as by the command", async () => {
+  const page = await opened();
+  await page.evaluate(() => {
+    const app = window.condyle;
+    app.select(app.model.about.segments.findIndex((s) => s.name === "hand_r"));
+  });
+  await page.click("#goals > summary");
+  await page.selectOption("#goal-kind", "point");
+  await page.click("#goal-add");
+  await page.selectOption("#goal-kind", "plane");
+  await page.evaluate(() => {
+    const app = window.condyle;
+    app.select(app.model.about.segments.findIndex((s) => s.name === "foot_l" || s.name === "calcaneus_l" || s.name === "talus_l"));
+  });
+  await page.click("#goal-add");
+  // Thirty centimetres up: the number is changed, and the figure follows.
+  const up = page.locator("[aria-label='at of point hand_r, y']");
+  await up.fill(String(Number(await up.inputValue()) + 30));
+  await up.press("Enter");
+  await page.waitForFunction(() => window.condyle.goals.lacks.length === 2 && window.condyle.goals.lacks[0].off < 2e-3);
+  await picture(page, "goals");
+  await page.click("#goals-solve");
+  await page.waitForFunction(() => window.condyle.goals.lacks.every((lack) => lack.met), null, { timeout: 120_000 });
+  const file = await downloaded(page, "#save-goals", "goals.toml");
+  const out = join(folder, "pose.json");
+  execFileSync(condyle, ["pose", "human", file, "-o", out], { stdio: ["ignore", "ignore", "ignore"] });
+  const native = JSON.parse(readFileSync(out, "utf8"));
+  const { values, broken } = await posed(page);
+  check(broken.length === 0, `out of range: ${broken}`);
+  let worst = 0;
+  for (const [key, value] of Object.entries(native)) if (key in values) worst = Math.max(worst, Math.abs(values[key] - value));
+  console.log(`   goals: at most ${worst.toExponential(1)} off the command`);
+  check(worst < 1e-6, `the page differs from the command by ${worst}`);
+  await page.close();
+  const again = await opened(file);
+  await again.waitForFunction(() => window.condyle.goals.list.goals.length === 2 && window.condyle.goals.list.goals[0].kind === "point");
+  await again.close();
+});
+
+await test("feet that are pinned stay while a hand is dragged", async () => {
+  const page = await opened();
+  await page.evaluate(() => {
+    const app = window.condyle;
+    const { markers } = app.model.about;
+    const [actor] = app.model.actors;
+    const goals = ["r_calc", "r_toe", "L_calc", "L_toe"].map((name) => {
+      const marker = markers.find((m) => m.name === name);
+      return { kind: "point", name, point: name, at: actor.world(marker.segment, marker.point) };
+    });
+    app.goals.change({ goals, hold: [], stiffness: [], limits: true }, "look");
+  });
+  await page.click("#drag");
+  const at = await page.evaluate(() => {
+    const { model, view } = window.condyle;
+    const hand = model.about.segments.findIndex((s) => s.name === "radius_r");
+    const [x, y] = view.project(model.actors[0].world(hand, [0, -0.12, 0]));
+    const box = document.getElementById("picture").getBoundingClientRect();
+    return [x + box.left, y + box.top];
+  });
+  const pelvis = await posed(page);
+  await page.mouse.move(...at);
+  await page.mouse.down();
+  for (let i = 1; i <= 10; i++) {
+    await page.mouse.move(at[0] - 6 * i, at[1] + 8 * i);
+    const { broken } = await posed(page);
+    check(broken.length === 0, `out of range: ${broken}`);
+  }
+  const hover = await page.textContent("#hover");
+  await page.waitForFunction(() => window.condyle.goals.lacks.length === 4);
+  const lacks = await page.evaluate(() => window.condyle.model.ask("lacking", { actor: 0 }).value.map((lack) => lack.off));
+  await picture(page, "pinned");
+  await page.mouse.up();
+  check(Math.max(...lacks) < 2e-3, `feet are off by ${lacks}`);
+  const off = Number(/: ([\d.]+) mm/.exec(hover)?.[1] ?? NaN);
+  console.log(`   pinned: the hand is ${off} mm off, feet at most ${(1000 * Math.max(...lacks)).toFixed(2)} mm`);
+  check(off < 20, `after dragging it says: ${hover}`);
+  const after = await posed(page);
+  check(Object.keys(after.values).some((key) => Math.abs(after.values[key] - pelvis.values[key]) > 0.02), "nothing moved");
+  await page.close();
+});
+
+await test("files of other formats are read by a module that is fetched then", async () => {
+  const osim = join(folder, "legs.osim");
+  execFileSync(condyle, ["convert", "legs", osim], { stdio: ["ignore", "ignore", "ignore"] });
+  const keys = join(folder, "bend.json");
+  writeFileSync(keys, JSON.stringify([{ time: 0, knee_angle_r: 0 }, { time: 1, knee_angle_r: -1 }]));
+  const glb = join(folder, "bend.glb");
+  execFileSync(condyle, ["convert", keys, glb, "--model", "knee", "--rate", "30"], { stdio: ["ignore", "ignore", "ignore"] });
+  asked.length = 0;
+  const page = await opened();
+  check(!asked.some((path) => path.includes("readers")), "nothing is fetched that is not needed");
+  await given(page, osim);
+  await page.waitForFunction(() => window.condyle.title === "legs" && window.condyle.model.about.coordinates.some((c) => c.name === "knee_angle_r"), null, { timeout: 120_000 });
+  check(asked.some((path) => path.includes("readers")), "the readers are fetched");
+  await given(page, glb);
+  await page.waitForFunction(() => window.condyle.title === "bend" && window.condyle.motions[0]?.times.length > 20, null, { timeout: 120_000 });
+  check((await page.evaluate(() => window.condyle.model.about.segments.length)) > 1, "a scene has segments");
+  await picture(page, "glb");
+  await page.close();
+});
+
 await browser.close();
 server.close();
 rmSync(folder, { recursive: true });
