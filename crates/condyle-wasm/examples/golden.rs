@@ -31,8 +31,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
+/// The name of a file, and its bytes.
+type Foreign = (&'static str, Vec<u8>);
+
 /// A leg of OpenSim, and a scene with a motion.
-fn foreign() -> Result<[(&'static str, Vec<u8>); 2], Box<dyn std::error::Error>> {
+fn foreign() -> Result<[Foreign; 2], Box<dyn std::error::Error>> {
     let leg = shipped::read("legs")?.value.model;
     let osim = Format::of_ending("osim").ok_or("no format")?;
     let arm = shipped::read("knee")?.value.model;

@@ -17,10 +17,9 @@ impl Stage {
         if text.is_empty() {
             return Ok(Answer::of(&json!({ "goals": [], "met": true })));
         }
-        let rest: Option<Vec<f64>> = match question["rest"].as_array() {
-            Some(list) => Some(list.iter().filter_map(Value::as_f64).collect()),
-            None => None,
-        };
+        let rest = question["rest"].as_array();
+        let rest: Option<Vec<f64>> =
+            rest.map(|list| list.iter().filter_map(Value::as_f64).collect());
         let fits = rest.as_ref().is_none_or(|rest| rest.len() == self.model.stored_len());
         if !fits {
             return Err(sentence("a pose to be near has all stored numbers of the model"));
