@@ -6,10 +6,13 @@ import { Curves } from "./curves";
 import { byId, element } from "./dom";
 import { Figure, Shape } from "./figure";
 import { frames } from "./files";
+import { GoalPanel } from "./goals";
 import { History } from "./history";
 import { Inspector } from "./inspector";
+import { Keys } from "./keys";
 import { Labels } from "./labels";
 import { Markers } from "./markers";
+import { take } from "./readers";
 import type { Session } from "./session";
 import { type Kind, Signs } from "./signs";
 import { Sliders } from "./sliders";
@@ -26,6 +29,8 @@ export class App {
   readonly labels = new Labels(byId("labels"), this.view);
   readonly sliders: Sliders;
   readonly inspector: Inspector;
+  readonly keys: Keys;
+  readonly goals: GoalPanel;
   model: Model | null = null;
   title = "condyle";
   motions: Motion[] = [];
@@ -58,6 +63,10 @@ export class App {
       },
     });
     this.inspector = new Inspector(this, byId("right"));
+    this.keys = new Keys(this);
+    this.history.parts.push({ get: () => this.keys.list, set: (list: Keys["list"]) => this.keys.restore(list) });
+    byId("coordinates").before(this.keys.root);
+    this.goals = new GoalPanel(this);
     byId("coordinates").append(this.sliders.root);
     byId("bottom").append(this.curves.root, this.timeline.root);
     this.view.content.add(this.signs.group, this.markers.group);
@@ -103,6 +112,8 @@ export class App {
     this.view.shows(model.about);
     this.view.themed();
     if (!kept) this.view.look(this.box());
+    this.keys.opened(kept);
+    this.goals.opened(kept);
     this.history.begin(model.actors[0]!.asked);
     byId("waiting").hidden = true;
     this.motionsChanged();
@@ -114,10 +125,10 @@ export class App {
   async take(files: Iterable<File>): Promise<void> {
     // A model first, whatever the order in which they were dropped.
     const all = await Promise.all([...files].map(async (file) => ({ file, bytes: new Uint8Array(await file.arrayBuffer()) })));
-    const models = /\.(toml|osim|xml|json|urdf|skel|asf|glb|gltf|bvh)$/i;
+    const models = /\.(toml|osim|xml|json|urdf|skel|asf|glb|gltf|vrm|npz|bvh)$/i;
     all.sort((a, b) => Number(models.test(b.file.name)) - Number(models.test(a.file.name)));
     for (const { file, bytes } of all) {
-      await this.attempt(() => this.took(this.core.take(file.name, bytes, this.model), file.name));
+      await this.attempt(async () => this.took(await take(this.core, file.name, bytes, this.model), file.name));
     }
   }
 
@@ -125,6 +136,11 @@ export class App {
   took(taken: Taken, name: string): void {
     if (taken.model) {
       this.open(taken.model, name.replace(/\.[^.]*$/, ""), taken.motion ? [taken.motion] : []);
+    } else if (taken.goals) {
+      this.goals.change(taken.goals);
+    } else if (taken.keys) {
+      this.keys.change(taken.keys);
+      this.timed();
     } else if (taken.motion && this.model && taken.motion.times.length === 1 && !taken.motion.markers) {
       // One frame is a pose, not a motion.
       this.chosen = [-1, -1];
@@ -274,11 +290,13 @@ export class App {
       const motion = this.motions[index];
       if (!motion || motion.times.length === 0) return;
       const actor = model.actor(which);
-      sample(motion, this.timeline.time, actor.asked);
+      if (motion.keyed) motion.keyed.at(this.timeline.time, which);
+      else sample(motion, this.timeline.time, actor.asked);
       // A motion is shown as it is, so that what it breaks is seen.
       actor.pose(false);
     });
     this.curves.draw(model.about, this.seen(), this.timeline.time);
+    this.keys.timed();
     this.posed();
   }
 
