@@ -35,7 +35,8 @@ use condyle_model::Model;
 #[cfg(feature = "poses")]
 use condyle_motion::Keys;
 use condyle_motion::{AngleUnit, Animation, Motion, Recording, Table, Zeros};
-use source::{bytes, nameless_format};
+pub(crate) use source::bytes;
+use source::nameless_format;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
