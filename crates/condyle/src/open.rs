@@ -324,6 +324,16 @@ pub fn figure(path: &Path) -> Result<Read<Animation>, OpenError> {
     animation(path)
 }
 
+/// The surfaces of a file of glTF, carried by the segments of the model that [`animation`] opens from it.
+#[cfg(feature = "glb")]
+pub(crate) fn surfaces(path: &Path) -> Result<Read<Vec<glb::Cover>>, OpenError> {
+    let bytes = bytes(path)?;
+    let options =
+        glb::Options { animation: source::wanted_animation(), assumed: source::assumed() };
+    let read = glb::covers(&bytes, &options, &mut |name| buffer(path, name));
+    read.map_err(|error| failed(path, Cause::Content { error, text: None }))
+}
+
 /// Whether a path names a file of glTF.
 #[cfg(feature = "glb")]
 pub fn is_gltf(path: &Path) -> bool {

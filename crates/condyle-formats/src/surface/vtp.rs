@@ -17,14 +17,16 @@ use std::io::Read;
 /// How large all numbers of a file may become, beside eight times its own size.
 const ROOM: usize = 64 << 20;
 
+/// What stands behind the `_` of the appended data, and whether it is base64.
+type Appended<'b> = Option<(&'b [u8], bool)>;
+
 /// How numbers are written that are not text.
 struct Encoding<'b> {
     big: bool,
     /// Bytes of a number in a heading.
     wide: usize,
     deflated: bool,
-    /// What stands behind the `_` of the appended data, and whether it is base64.
-    appended: Option<(&'b [u8], bool)>,
+    appended: Appended<'b>,
 }
 
 pub(super) fn read(bytes: &[u8]) -> Result<Soup, Error> {
@@ -99,7 +101,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Soup, Error> {
 }
 
 /// The XML without what is appended to it, which may be any bytes.
-fn split(bytes: &[u8]) -> (Cow<'_, [u8]>, Option<(&[u8], bool)>) {
+fn split(bytes: &[u8]) -> (Cow<'_, [u8]>, Appended<'_>) {
     const TAG: &[u8] = b"<AppendedData";
     let whole = (Cow::Borrowed(bytes), None);
     let Some(tag) = bytes.windows(TAG.len()).position(|part| part == TAG) else { return whole };

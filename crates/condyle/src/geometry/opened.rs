@@ -34,8 +34,39 @@ pub fn open(path: &Path, model: &Model) -> Result<Read<Geometry>, OpenError> {
     if !open::is_standard_input(path) && open::ending(path) == "osim" {
         return meshes::of(path, model, FOLDERS.get().map_or(&[], Vec::as_slice));
     }
+    #[cfg(feature = "glb")]
+    if open::is_gltf(path) && !open::is_standard_input(path) {
+        return skins(path, model);
+    }
     let _ = (path, model);
     Ok(Read::clean(Geometry::default()))
+}
+
+#[cfg(feature = "glb")]
+fn skins(path: &Path, model: &Model) -> Result<Read<Geometry>, OpenError> {
+    use super::{Hold, Skin};
+    use condyle_formats::glb;
+    let read = open::surfaces(path)?;
+    let segments: Vec<_> = model.segment_ids().collect();
+    let hold = |carrier: glb::Carrier| Hold {
+        segment: carrier.segment.and_then(|at| segments.get(at).copied()),
+        bind: carrier.bind,
+    };
+    // Light as a screen takes it (IEC 61966-2-1).
+    let shown = |x: f64| {
+        let x = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
+        (255.0 * x).round() as u8
+    };
+    let skins = read.value.into_iter().map(|cover| Skin {
+        name: cover.name,
+        mesh: cover.mesh,
+        holds: cover.carriers.into_iter().map(hold).collect(),
+        carriers: cover.joints,
+        weights: cover.weights,
+        colour: cover.colour.map(|light| light.map(shown)),
+    });
+    let geometry = Geometry { meshes: vec![], skins: skins.collect() };
+    Ok(Read { value: geometry, warnings: read.warnings })
 }
 
 #[cfg(feature = "surfaces")]
