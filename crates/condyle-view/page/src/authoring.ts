@@ -195,8 +195,10 @@ class Panel {
     const first = rows[0]!.value.origin;
     const sign = first.kind === "plain" ? "" : `, ${first.kind}`;
     const head = element("span", { class: "soft" }, ` ${unit}${sign}, line ${first.line}`);
-    if (!many) return element("fieldset", { "data-path": name }, element("legend", {}, name, head), ...fields, this.nudges(rows));
-    const details = element("details", { "data-path": name, open: this.open.has(name) }, element("summary", {}, name, head), ...fields);
+    // Long names may be broken after their dots.
+    const title = name.replaceAll(".", ".\u200b");
+    if (!many) return element("fieldset", { "data-path": name }, element("legend", {}, title, head), ...fields, this.nudges(rows));
+    const details = element("details", { "data-path": name, open: this.open.has(name) }, element("summary", {}, title, head), ...fields);
     details.addEventListener("toggle", () => (details.open ? this.open.add(name) : this.open.delete(name)));
     return details;
   }
