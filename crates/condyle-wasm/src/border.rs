@@ -1,8 +1,9 @@
 //! What WebAssembly exports.
 //!
-//! **Why `unsafe` is allowed here.** The one thing used of it is `#[unsafe(no_mangle)]`, which is unsafe because a
+//! **Why `unsafe` is allowed here.** What is used of it is `#[unsafe(no_mangle)]`, which is unsafe because a
 //! name could stand twice in a program. These names stand in the module of this crate alone (the file is not
-//! compiled for anything but WebAssembly), and none is a name of its run-time library.
+//! compiled for anything but WebAssembly), and none is a name of its run-time library. And one function of the page is
+//! called, which takes two numbers.
 //!
 //! No pointer is followed in Rust. The page writes to and reads from buffers that Rust owns, at addresses that are handed
 //! out here, in calls between which nothing else runs: a module without threads has one caller. `input` is
@@ -15,6 +16,18 @@ use crate::answer::{Answer, Fault, sentence};
 use crate::reading::{Given, read};
 use crate::stage::{Actor, Stage};
 use std::cell::RefCell;
+
+#[link(wasm_import_module = "page")]
+unsafe extern "C" {
+    /// How many frames of how many are tracked: the page draws a bar. It takes two numbers and gives none, so that no memory
+    /// is at stake, and must not call back.
+    safe fn progress(done: u32, of: u32);
+}
+
+/// Tells the page how many frames of how many are tracked.
+pub(crate) fn told(done: usize, of: usize) {
+    progress(done as u32, of as u32);
+}
 
 #[derive(Default)]
 struct Desk {

@@ -37,6 +37,7 @@ mod saved;
 mod shown;
 mod signs;
 mod stage;
+mod tracked;
 
 pub use answer::{Answer, Fault};
 #[cfg(feature = "readers")]

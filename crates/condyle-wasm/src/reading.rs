@@ -6,6 +6,7 @@
 use crate::answer::{Answer, Fault, fault, said, sentence};
 use crate::goals;
 use crate::shown::Shown;
+use crate::tracked::told;
 use condyle::formats::{bvh, c3d, csv, document, exchange, poses, sto, trc};
 use condyle::tracking::{Request, track};
 use condyle::{Diagnostic, Error, Model, Motion, Read, Recording, Table, Zeros, open, shipped};
@@ -121,7 +122,7 @@ fn table(model: &Model, name: &str, read: Read<Table>) -> Result<Given, Fault> {
 fn tracked(model: &Model, name: &str, read: Read<Recording>) -> Result<Given, Fault> {
     let Read { value: mut recording, mut warnings } = read;
     warnings.extend(recording.settle_zeros(Zeros::Told));
-    let tracking = track(model, &recording, &Request::default(), &mut |_, _| {});
+    let tracking = track(model, &recording, &Request::default(), &mut told);
     let tracking = tracking.map_err(|error: Error| fault(&error))?;
     warnings.extend(tracking.warnings.iter().cloned());
     let shown = Shown::tracked(name.to_owned(), model, &recording, &tracking);

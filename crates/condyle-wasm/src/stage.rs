@@ -128,6 +128,7 @@ impl Stage {
             }
             "keys" => self.keys(&question),
             "keyed" => self.keyed(&question),
+            "track" => self.track(&question),
             "check" => self.checked(&question),
             "save" => self.saved(&question),
             other => Err(sentence(format!("nothing is asked by `{other}`"))),

@@ -56,12 +56,16 @@ export class Answer<T> {
 }
 
 export class Core {
-  private constructor(private readonly exports: Exports) {}
+  private constructor(
+    private readonly exports: Exports,
+    /** For others that do what takes long beside the page. */
+    readonly module: WebAssembly.Module,
+  ) {}
 
   /** Unpacks and starts the evaluator. */
   static async start(packed: Uint8Array): Promise<Core> {
-    const { instance } = await WebAssembly.instantiate(unpack(packed));
-    return new Core(instance.exports as Exports);
+    const { instance, module } = await WebAssembly.instantiate(unpack(packed), { page: { progress() {} } });
+    return new Core(instance.exports as Exports, module);
   }
 
   /** Names of the models that come along. */
@@ -78,11 +82,11 @@ export class Core {
     input.set(title);
     input.set(bytes, title.length);
     const result = this.exports.take(model?.handle ?? 0xffffffff, title.length);
-    const answer = this.answer<Faults & Omit<Taken, "model" | "motion"> & { motion: PackedMotion | null }>();
+    const answer = this.answer<Faults & Read>();
     if (result === 0) throw new Refused(answer.value.faults);
-    const { motion, ...more } = answer.value;
-    const read = motion && unpacked(motion, (span) => answer.floats(span));
-    return { model: result > 1 ? new Model(this, result - 2) : null, motion: read, ...more };
+    const taken = read(answer);
+    if (result > 1) taken.model = new Model(this, result - 2, { name, bytes });
+    return taken;
   }
 
   ask<T>(handle: number, question: object): Answer<T> {
@@ -111,6 +115,14 @@ export class Core {
 
 interface Faults {
   faults: Said[];
+}
+
+type Read = Omit<Taken, "model" | "motion"> & { motion: PackedMotion | null };
+
+/** What was read of a file that holds no model. */
+export function read(answer: Answer<Read>): Taken {
+  const { motion, ...more } = answer.value;
+  return { model: null, motion: motion && unpacked(motion, (span) => answer.floats(span)), ...more };
 }
 
 export interface Taken {
@@ -216,6 +228,8 @@ export class Model {
   constructor(
     readonly core: Core,
     readonly handle: number,
+    /** The file that it was read from. */
+    readonly file: { name: string; bytes: Uint8Array },
   ) {
     this.about = this.ask<Described>("describe").value;
     this.actors.push(new Actor(this, 0));

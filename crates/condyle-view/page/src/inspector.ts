@@ -1,6 +1,7 @@
 // What is selected, its network, and what motions break.
 
 import type { App } from "./app";
+import { trackAgain } from "./aside";
 import type { Mark } from "./core";
 import { element } from "./dom";
 import { Network } from "./network";
@@ -75,7 +76,11 @@ export class Inspector {
         element("h2", {}, "motions"),
         element("div", {}, choice(0, "none"), " with ", choice(1, "nothing"), " ", element("label", {}, beside, " side by side")),
       );
-      if (motions[chosen[0]]?.markers) parts.push(element("dl", {}, element("dt", {}, "markers off by"), this.error));
+      const shown = motions[chosen[0]];
+      if (shown?.markers) {
+        const again = () => void this.app.attempt(() => trackAgain(this.app, shown, true));
+        parts.push(element("dl", {}, element("dt", {}, "markers off by"), this.error), element("button", { id: "track-again", title: "track the markers with the model as it is now", onclick: again }, "track again"));
+      }
       parts.push(this.findings());
     }
     this.root.replaceChildren(...parts, ...this.also);

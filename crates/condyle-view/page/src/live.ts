@@ -1,6 +1,8 @@
 // Changes that the server tells.
 
+import { carried } from "./again";
 import type { App } from "./app";
+import { trackAgain } from "./aside";
 import { served } from "./session";
 
 interface Told {
@@ -20,11 +22,25 @@ export function live(app: App): void {
   });
 }
 
-/** Shows what the session holds now, in the pose that is there. */
+/** Shows what the session holds now, in the pose and at the time that are there; motions follow. */
 async function again(app: App): Promise<void> {
   const session = await served();
   if (!session?.model) return;
   const { name, format, text } = session.model;
+  const before = app.model?.about;
+  const seen = app.chosen.map((which) => app.motions[which]?.name);
+  const old = app.motions;
   const taken = app.core.take(`${name}.${format}`, new TextEncoder().encode(text), null);
-  if (taken.model) app.open(taken.model, session.title, session.motions, true);
+  if (!taken.model) return;
+  // Those that were dropped on the page are known here alone.
+  const dropped = old.filter((motion) => !session.motions.some((other) => other.name === motion.name));
+  const { motions, said } = before ? carried(dropped, before, taken.model.about) : { motions: [], said: [] };
+  app.open(taken.model, session.title, [...session.motions, ...motions], true);
+  const index = (wanted: string | undefined) => app.motions.findIndex((motion) => motion.name === wanted);
+  if (seen[0] !== undefined && index(seen[0]) >= 0) app.chosen = [index(seen[0]), seen[1] === undefined ? -1 : index(seen[1])];
+  app.motionsChanged();
+  app.timed();
+  if (said.length > 0) app.say(said);
+  const shown = app.motions[app.chosen[0]];
+  if (shown?.markers) void app.attempt(() => trackAgain(app, shown, false));
 }

@@ -1,5 +1,6 @@
 // Readers of all formats: a second module, fetched when a file is given that the evaluator does not read.
 
+import { isRecording, tracked } from "./aside";
 import { type Core, type Model, type PackedMotion, Refused, type Said, type Span, type Taken, bytesOf, unpacked } from "./core";
 import { unpack } from "./unpack";
 
@@ -27,6 +28,7 @@ let readers: Promise<Exports> | null = null;
 
 /** Reads a file of any format: what is of few is read by the evaluator itself, the rest comes to it through them. */
 export async function take(core: Core, name: string, bytes: Uint8Array, model: Model | null): Promise<Taken> {
+  if (model && isRecording(name)) return tracked(model, name, bytes);
   if (!OTHERS.test(name)) return core.take(name, bytes, model);
   readers ??= fetched();
   // What could not be fetched is asked for again.
@@ -44,7 +46,8 @@ export async function take(core: Core, name: string, bytes: Uint8Array, model: M
   const start = all.numbers_at();
   const numbers = all.memory.buffer.slice(start, start + all.numbers_length()) as ArrayBuffer;
   if (converted.recording) {
-    const taken = core.take(`${name}.trc`, new Uint8Array(numbers), model);
+    if (!model) throw new Error("give a model first");
+    const taken = await tracked(model, `${name}.trc`, new Uint8Array(numbers));
     return { ...taken, warnings: [...converted.warnings, ...taken.warnings] };
   }
   const taken = core.take(`${name}.json`, new TextEncoder().encode(converted.model ?? ""), null);
@@ -56,7 +59,7 @@ export async function take(core: Core, name: string, bytes: Uint8Array, model: M
 async function fetched(): Promise<Exports> {
   const inside = document.getElementById("readers");
   const packed = inside ? bytesOf(inside.textContent ?? "") : await asset();
-  const { instance } = await WebAssembly.instantiate(unpack(packed));
+  const { instance } = await WebAssembly.instantiate(unpack(packed), { page: { progress() {} } });
   return instance.exports as Exports;
 }
 

@@ -59,6 +59,15 @@ for (const colorScheme of ["light", "dark"]) {
         for (const set of [...document.querySelectorAll("#coordinates details")].slice(0, 6)) set.open = true;
       });
       await audited(page);
+      // Key poses and goals of every kind.
+      await page.evaluate(() => {
+        const { keys, goals } = window.condyle;
+        keys.set(0);
+        keys.set(1);
+        for (const { value } of [...document.querySelectorAll("#goal-kind option")]) goals.add(value);
+        keys.root.open = goals.root.open = true;
+      });
+      await audited(page);
       await page.keyboard.press("?");
       await audited(page);
       // Nothing lies beside the window: at 200 % the parts of the page stand one below the other.

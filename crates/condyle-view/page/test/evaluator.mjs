@@ -5,7 +5,7 @@ import { fileURLToPath } from "node:url";
 async function started(name) {
   const packed = fileURLToPath(new URL(`../dist/assets/${name}.wasm.lzma`, import.meta.url));
   const module = execFileSync("xz", ["--format=lzma", "--decompress", "--stdout", packed], { maxBuffer: 1 << 28 });
-  const { instance } = await WebAssembly.instantiate(module);
+  const { instance } = await WebAssembly.instantiate(module, { page: { progress() {} } });
   return instance.exports;
 }
 

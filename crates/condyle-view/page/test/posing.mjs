@@ -1,6 +1,6 @@
 // Key poses, goals, and files of all formats on the page as a static site: node posing.mjs CONDYLE CHROMIUM MODELS.
 // It waits for states, never for times.
-import { execFileSync } from "node:child_process";
+import { execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { tmpdir } from "node:os";
@@ -32,13 +32,13 @@ function check(good, what) {
   if (!good) throw new Error(what);
 }
 
-async function opened(file) {
+async function opened(file, address = `http://127.0.0.1:${server.address().port}/`) {
   const page = await browser.newPage({ viewport: { width: 1100, height: 760 }, colorScheme: process.env.DARK ? "dark" : "light" });
   page.on("pageerror", (error) => failures.push(error.message));
   page.on("console", (message) => {
     if (message.type() === "error" && !message.location().url.endsWith("/session.json")) failures.push(message.text());
   });
-  await page.goto(`http://127.0.0.1:${server.address().port}/`);
+  await page.goto(address);
   await page.waitForFunction(() => document.documentElement.dataset.ready === "yes", null, { timeout: 120_000 });
   if (file) await given(page, file);
   return page;
@@ -285,6 +285,82 @@ await test("files of other formats are read by a module that is fetched then", a
   await page.waitForFunction(() => window.condyle.title === "bend" && window.condyle.motions[0]?.times.length > 20, null, { timeout: 120_000 });
   check((await page.evaluate(() => window.condyle.model.about.segments.length)) > 1, "a scene has segments");
   await picture(page, "glb");
+  await page.close();
+});
+
+/** A recording of a walking leg's markers, made by the command from a motion. */
+function recording(frames) {
+  const motion = join(folder, "bend.csv");
+  const rows = Array.from({ length: frames }, (_, k) => `${k / 50},${0.2 + 0.8 * Math.sin(k / 20) ** 2},${0.3 * Math.sin(k / 15)}`);
+  writeFileSync(motion, `time,knee_angle_r,hip_flexion_r\n${rows.join("\n")}\n`);
+  const trial = join(folder, "trial.trc");
+  execFileSync(condyle, ["convert", motion, trial, "--model", "legs"], { stdio: ["ignore", "ignore", "ignore"] });
+  return trial;
+}
+
+await test("a recording is tracked beside the page, and anew after an edit", async () => {
+  const trial = recording(60);
+  const model = join(folder, "legs.toml");
+  execFileSync(condyle, ["convert", "legs", model], { stdio: ["ignore", "ignore", "ignore"] });
+  const view = spawn(condyle, ["view", model, trial, "--no-open"], { cwd: folder, stdio: ["ignore", "pipe", "inherit"] });
+  const address = await new Promise((resolve, reject) => {
+    view.stdout.once("data", (bytes) => resolve(bytes.toString().trim()));
+    view.once("exit", (code) => reject(new Error(`condyle view ended with ${code}`)));
+  });
+  const page = await opened(null, address);
+  const column = (key) => page.evaluate((key) => {
+    const app = window.condyle;
+    const { place } = app.model.about.coordinates.find((c) => c.key === key);
+    const { values, width, times } = app.motions[0];
+    return times.map((_, k) => values[k * width + place]);
+  }, key);
+  const compared = async (what) => {
+    const out = join(folder, "tracked.csv");
+    execFileSync(condyle, ["track", model, trial, "-o", out], { stdio: ["ignore", "ignore", "ignore"] });
+    const { names, rows } = table(readFileSync(out, "utf8"));
+    let worst = 0;
+    for (const key of ["knee_angle_r", "hip_flexion_r"]) {
+      const own = await column(key);
+      own.forEach((value, k) => (worst = Math.max(worst, Math.abs(value - rows[k][names.indexOf(key)]))));
+    }
+    console.log(`   ${what}: at most ${worst.toExponential(1)} rad off the command`);
+    // Positions are in single precision on the page: 1e-7 m over limbs of a few decimetres.
+    check(worst < 1e-4, `${what}: the page differs from the command by ${worst}`);
+  };
+  await compared("as served");
+  // Asked by the button; the answer is a new motion.
+  await page.evaluate(() => (window.before = window.condyle.motions[0]));
+  await page.click("#track-again");
+  await page.waitForFunction(() => window.condyle.motions[0] !== window.before, null, { timeout: 120_000 });
+  await compared("tracked again");
+  // An edit of the model's file: the knee is three centimetres lower. It is tracked anew without being asked, or, where that
+  // takes long, when it is.
+  await page.evaluate(() => (window.before = window.condyle.motions[0].values.slice()));
+  const text = readFileSync(model, "utf8");
+  const edited = text.replace(/at = \[-0\.0019, -0\.419, 0\.0015\]/, "at = [-0.0019, -0.449, 0.0015]");
+  check(edited !== text, "the knee stands in the text");
+  writeFileSync(model, edited);
+  await page.waitForFunction(() => {
+    document.getElementById("track-now")?.click();
+    const { values } = window.condyle.motions[0];
+    return values.some((value, k) => Math.abs(value - window.before[k]) > 1e-3);
+  }, null, { timeout: 120_000 });
+  await compared("after an edit");
+  await picture(page, "again");
+  await page.close();
+  view.kill("SIGINT");
+});
+
+await test("a recording that is dropped is tracked while the page lives", async () => {
+  const page = await opened();
+  await page.selectOption("#shipped", "legs");
+  await page.waitForFunction(() => window.condyle.title === "legs");
+  await given(page, recording(400));
+  // The bar is seen while the page answers.
+  await page.waitForFunction(() => document.querySelector("#tracking progress") || window.condyle.motions.length > 0);
+  await picture(page, "tracking");
+  await page.waitForFunction(() => window.condyle.motions[0]?.times.length === 400, null, { timeout: 240_000 });
+  check((await page.evaluate(() => window.condyle.markers.error)) < 1e-3, "its markers are met");
   await page.close();
 });
 
