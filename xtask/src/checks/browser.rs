@@ -7,8 +7,9 @@ use crate::tool;
 use std::process::Command;
 use std::time::Duration;
 
-/// What is run: the page as a file and as a static site, and the page as it is served, which edits a model.
-const SCRIPTS: [&str; 2] = ["browser.mjs", "authoring.mjs"];
+/// What is run: the page as a file and as a static site, the page as it is served, which edits a model, and what people
+/// need who see little or use keys alone.
+const SCRIPTS: [&str; 3] = ["browser.mjs", "authoring.mjs", "accessible.mjs"];
 /// The texts of the shipped models.
 const MODELS: &str = "crates/condyle/models";
 /// The longest that each of them may take, on a machine that does other things as well.

@@ -136,7 +136,7 @@ export class Sliders {
     });
     const reset = element(
       "button",
-      { class: "quiet", title: `neutral: ${shown(neutral, unit)} ${unit.sign}`, "aria-label": `${label} to neutral`, onclick: () => set(neutral, true) },
+      { class: "quiet", title: `neutral: ${shown(neutral, unit)} ${unit.sign}`, "aria-label": `0: ${label} to its neutral value`, onclick: () => set(neutral, true) },
       "0",
     );
     const curve = element(
