@@ -33,6 +33,7 @@ mod signs;
 mod stage;
 
 pub use answer::{Answer, Fault};
+pub use bones::{skins, surfaces};
 pub use reading::{Given, read};
 pub use shown::Shown;
 pub use stage::{Actor, Stage};

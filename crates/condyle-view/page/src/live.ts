@@ -1,6 +1,7 @@
 // Changes that the server tells.
 
 import type { App } from "./app";
+import { looks } from "./looks";
 import { served } from "./session";
 
 interface Told {
@@ -27,4 +28,5 @@ async function again(app: App): Promise<void> {
   const { name, format, text } = session.model;
   const taken = app.core.take(`${name}.${format}`, new TextEncoder().encode(text), null);
   if (taken.model) app.open(taken.model, session.title, session.motions, true);
+  app.dress(await looks(session.model.geometry));
 }
