@@ -8,7 +8,8 @@ fn meshes_stand_where_opensim_has_them() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../oracles/geometry");
     let answers = std::fs::read_to_string(format!("{folder}/meshes.json")).expect("it is kept");
     let answers: serde_json::Value = serde_json::from_str(&answers).expect("JSON");
-    for (name, count) in [("new", 4), ("old", 3)] {
+    // Where OpenSim converts old files it writes new frames in six digits.
+    for (name, count, near) in [("new", 4, 1e-9), ("old", 3, 2e-6)] {
         let bytes = std::fs::read(format!("{folder}/{name}.osim")).expect("it is kept");
         let model = model::read(&bytes).expect("a model").value;
         let meshes = geometry::read(&bytes, &mut |name| Err(name.to_owned())).expect("meshes");
@@ -26,7 +27,7 @@ fn meshes_stand_where_opensim_has_them() {
                 let expected = expected.as_f64().expect("a number");
                 let file = &mesh.file;
                 assert!(
-                    (found - expected).abs() < 1e-9,
+                    (found - expected).abs() < near,
                     "{name} {file} {place}: {found} {expected}"
                 );
             }
