@@ -21,6 +21,6 @@ pub mod server;
 mod session;
 
 pub use bundle::{Asset, PAGE, asset, assets};
-pub use condyle_wasm::Shown;
+pub use condyle_wasm::{Answer, Shown};
 pub use export::exported;
 pub use session::{Mode, Session, shown};

@@ -4,8 +4,8 @@ use crate::base64::base64;
 use condyle::formats::{Content, exchange};
 use condyle::open::{self, Cause, OpenError};
 use condyle::tracking::{Request, track};
-use condyle::{Animation, Model, Read};
-use condyle_wasm::Shown;
+use condyle::{Animation, Figure, Model, Read, geometry};
+use condyle_wasm::{Answer, Shown, skins, surfaces};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -27,8 +27,8 @@ pub struct Session {
     pub model: Model,
     /// The motions, in the order in which they were named.
     pub motions: Vec<Shown>,
-    /// Files of meshes that the model names: each with the address at which the page finds it.
-    pub geometry: Vec<(String, String)>,
+    /// What the model looks like beside its own shapes: `meshes` that its file names, and a `skin`, where there are any.
+    pub geometry: Vec<(&'static str, Answer)>,
     /// The text file of the model where the page may edit it.
     pub source: Option<String>,
 }
@@ -52,6 +52,15 @@ impl Session {
         let mut session = Self::of(found);
         let stem = model.file_stem().unwrap_or_default().to_string_lossy();
         session.title = stem.into_owned();
+        let read = geometry::open(model, &session.model)?;
+        warnings.extend(read.warnings);
+        let figure = Figure::new(&session.model).with(read.value);
+        if !figure.meshes.is_empty() {
+            session.geometry.push(("meshes", surfaces(&figure.meshes)));
+        }
+        if !figure.skins.is_empty() {
+            session.geometry.push(("skin", skins(&figure.skins)));
+        }
         if motion.frames.len() > 1 {
             session.motions.push(Shown::of(name(model), motion));
         }
@@ -67,8 +76,20 @@ impl Session {
     #[must_use]
     pub fn to_json(&self, mode: Mode) -> String {
         let text = exchange::write(&self.model);
-        let geometry: serde_json::Map<String, Value> =
-            self.geometry.iter().map(|(name, at)| (name.clone(), json!(at))).collect();
+        // Numbers stand in a file of their own, or in a page that has no other files inside of it.
+        let look = |(name, answer): &(&str, Answer)| {
+            let at = match mode {
+                Mode::Served => json!(format!("files/{name}")),
+                Mode::Exported => Value::Null,
+            };
+            let numbers = match mode {
+                Mode::Served => Value::Null,
+                Mode::Exported => base64(&answer.numbers).into(),
+            };
+            let text: Value = serde_json::from_str(&answer.text).unwrap_or_default();
+            ((*name).to_owned(), json!({ "at": at, "numbers": numbers, "text": text }))
+        };
+        let geometry: serde_json::Map<String, Value> = self.geometry.iter().map(look).collect();
         let mode = match mode {
             Mode::Served => "served",
             Mode::Exported => "exported",
@@ -143,6 +164,35 @@ mod tests {
         let read = exchange::read(text.as_bytes()).expect("a model");
         assert!(read.value.find_coordinate("knee_angle_r").is_ok());
         assert_eq!(json["editable"], json!(false));
+        Ok(())
+    }
+
+    #[test]
+    fn meshes_that_a_model_names_come_along() -> Result<(), Box<dyn std::error::Error>> {
+        let folder = std::env::temp_dir().join(format!("condyle-meshes-{}", std::process::id()));
+        std::fs::create_dir_all(folder.join("Geometry"))?;
+        let mesh = |name| format!("<Mesh name='{name}'><mesh_file>{name}.obj</mesh_file></Mesh>");
+        let text = format!(
+            "<OpenSimDocument Version='40000'><Model name='arm'><BodySet><objects><Body name='ulna'>\
+             <attached_geometry>{}{}</attached_geometry></Body></objects></BodySet></Model></OpenSimDocument>",
+            mesh("ulna"),
+            mesh("radius")
+        );
+        std::fs::write(folder.join("arm.osim"), text)?;
+        std::fs::write(folder.join("Geometry/ulna.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0.5\nf 1 2 3\n")?;
+        let read = Session::open(&folder.join("arm.osim"), &[])?;
+        let missing = read.warnings.iter().filter(|said| said.code == "geometry/missing");
+        let missing: Vec<String> = missing.map(|said| said.message.clone()).collect();
+        assert_eq!(missing, ["1 of 2 mesh files are not there: `radius.obj`"]);
+        let json: Value = serde_json::from_str(&read.value.to_json(Mode::Served))?;
+        let meshes = &json["model"]["geometry"]["meshes"];
+        assert_eq!((&meshes["at"], &meshes["numbers"]), (&json!("files/meshes"), &Value::Null));
+        assert_eq!(meshes["text"]["positions"], json!([0, 9]));
+        // The last number of the third corner is a half.
+        assert_eq!(read.value.geometry[0].1.numbers[32..36], 0.5f32.to_le_bytes());
+        let json: Value = serde_json::from_str(&read.value.to_json(Mode::Exported))?;
+        assert!(json["model"]["geometry"]["meshes"]["numbers"].is_string());
+        std::fs::remove_dir_all(&folder)?;
         Ok(())
     }
 }

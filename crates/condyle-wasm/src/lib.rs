@@ -40,6 +40,7 @@ mod stage;
 mod tracked;
 
 pub use answer::{Answer, Fault};
+pub use bones::{skins, surfaces};
 #[cfg(feature = "readers")]
 pub use converted::converted;
 pub use reading::{Given, read};

@@ -25,6 +25,9 @@ struct Page {
     model: PathBuf,
     /// Motions of it, or marker recordings, which are tracked.
     motion: Vec<PathBuf>,
+    /// A folder in which the meshes are that an `.osim` names, beside its own folder and `Geometry` there.
+    #[arg(long, value_name = "DIR")]
+    geometry: Vec<PathBuf>,
     /// What stands above the page; without it, the name of the model's file.
     #[arg(long)]
     title: Option<String>,
@@ -46,6 +49,7 @@ impl Page {
         let inputs = [&self.model].into_iter().chain(&self.motion);
         let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
         output::check_distinct(&inputs, &[&self.output])?;
+        condyle::geometry::folder_is(self.geometry);
         let read = Session::open(&self.model, &self.motion)?;
         warn_about(&self.model, &read.warnings);
         let mut session = read.value;

@@ -18,6 +18,9 @@ pub(crate) struct View {
     /// The port of the page's address; without it, one that is free.
     #[arg(long, value_name = "N", default_value_t = 0)]
     port: u16,
+    /// A folder in which the meshes are that an `.osim` names, beside its own folder and `Geometry` there.
+    #[arg(long, value_name = "DIR")]
+    geometry: Vec<PathBuf>,
     /// Do not open a browser: only print the address.
     #[arg(long)]
     no_open: bool,
@@ -29,6 +32,7 @@ impl View {
             tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build();
         let runtime = runtime.map_err(|error| Failure::new(format!("no threads: {error}")))?;
         let named = self.model.clone().unwrap_or_default();
+        condyle::geometry::folder_is(self.geometry);
         let wanted = Wanted {
             model: self.model,
             motions: self.motion,

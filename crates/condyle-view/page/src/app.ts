@@ -11,6 +11,7 @@ import { History } from "./history";
 import { Inspector } from "./inspector";
 import { Keys } from "./keys";
 import { Labels } from "./labels";
+import type { Look, Looks } from "./looks";
 import { Markers } from "./markers";
 import { take } from "./readers";
 import type { Session } from "./session";
@@ -34,7 +35,7 @@ export class App {
   model: Model | null = null;
   title = "condyle";
   motions: Motion[] = [];
-  /** Which motion drives the figure, and which the second one; -1 is none. */
+  /** Which motion drives the figure, and which the second one; -1 is none, -2 all others, each with a figure of its own. */
   chosen: [number, number] = [-1, -1];
   sideBySide = false;
   withinLimits = true;
@@ -43,11 +44,16 @@ export class App {
   /** The joint set whose limits, axes and network are shown. */
   set: number | null = null;
   show = new Set<Kind>();
+  /** What is seen of figures. */
+  looked = new Set<Look>(["bones", "meshes", "skin"]);
   figures: Figure[] = [];
   marks: Mark[] = [];
   /** Called when anything a control shows may have changed. */
   onchange: (() => void)[] = [];
   private shape: Shape | null = null;
+  private looks: Looks | null = null;
+  /** Names over figures of a row, and how high over the first segment they are. */
+  private names: { figure: Figure; text: string; high: number }[] = [];
   private restless = false;
 
   constructor(
@@ -82,25 +88,21 @@ export class App {
     // Numbers of segments and sets may be others in the new model; names say what was looked at.
     const old = kept ? this.model?.about : undefined;
     const chosen = { segment: this.selected === null ? undefined : old?.segments[this.selected]?.name, set: this.set === null ? undefined : old?.sets[this.set] };
-    for (const figure of this.figures) {
-      this.view.content.remove(figure.mesh);
-      figure.dispose();
-    }
-    this.shape?.geometry.dispose();
     // Nothing asks the old model any more.
     this.inspector.network.clear();
     this.model?.close();
     this.model = model;
     this.title = title;
     this.motions = motions;
-    this.chosen = [motions.length > 0 ? 0 : -1, -1];
+    // Three and more stand in a row.
+    this.sideBySide ||= motions.length > 2;
+    this.chosen = [motions.length > 0 ? 0 : -1, motions.length > 2 ? -2 : -1];
+    this.looks = null;
     [this.selected, this.set] = [index(model.about.segments, chosen.segment), index(model.about.sets, chosen.set)];
     this.curves.clear();
     byId("title").textContent = title;
     document.title = `${title} – condyle`;
-    this.shape = new Shape(model);
-    this.figures = [new Figure(this.shape, model.actors[0]!)];
-    this.view.content.add(this.figures[0]!.mesh);
+    this.shaped(model);
     if (before) {
       for (const c of model.about.coordinates) {
         const value = before.get(c.key);
@@ -119,6 +121,49 @@ export class App {
     this.motionsChanged();
     this.posed();
     this.accented();
+    if (!kept && this.figures.length > 1) this.view.look(this.box());
+  }
+
+  /** Shows meshes and a skin that came with the model. */
+  dress(looks: Looks | null): void {
+    if (!this.model || !looks) return;
+    this.looks = looks;
+    this.shaped(this.model);
+    this.motionsChanged();
+    this.accented();
+    this.posed();
+  }
+
+  /** Which looks there are to choose from. */
+  get lookable(): Look[] {
+    return this.shape?.has ?? [];
+  }
+
+  /** Shows one look more, or no more. */
+  looksLike(look: Look): void {
+    if (!this.looked.delete(look)) this.looked.add(look);
+    this.relooked();
+    this.signed();
+    for (const call of this.onchange) call();
+  }
+
+  private relooked(): void {
+    // What cannot be chosen is seen.
+    const bare = this.lookable.length === 0;
+    this.shape?.shows(bare ? new Set<Look>(["bones"]) : this.looked);
+    for (const figure of this.figures) figure.looks(this.looked);
+  }
+
+  private shaped(model: Model): void {
+    for (const figure of this.figures.splice(0)) {
+      this.view.content.remove(figure.mesh);
+      figure.dispose();
+    }
+    this.shape?.dispose();
+    this.shape = new Shape(model, this.looks);
+    this.figures = [new Figure(this.shape, model.actors[0]!)];
+    this.view.content.add(this.figures[0]!.mesh);
+    this.relooked();
   }
 
   /** Reads files that a person gives. */
@@ -243,30 +288,47 @@ export class App {
     }
     const motion = this.motions[this.chosen[0]] ?? null;
     this.markers.update(model.actors[0]!, motion, this.timeline.time, 0.008 * Math.min(1, view.unit / 0.05), this.show.has("markers"));
-    this.labels.set(this.signs.labels);
+    const up = model.about.up === "y" ? 1 : 2;
+    const named = this.names.map(({ figure, text, high }) => {
+      const at = figure.actor.world(0, [0, 0, 0]);
+      figure.mesh.position.toArray().forEach((by, axis) => (at[axis]! += by));
+      at[up] += high;
+      return { at, text, colour: 0x26_2b_33 };
+    });
+    this.labels.set([...named, ...this.signs.labels]);
   }
 
   /** A motion was added or another one is to be seen. */
   motionsChanged(): void {
     const { model } = this;
     if (!model) return;
-    const second = this.chosen[1] >= 0;
-    if (second && this.figures.length < 2) {
-      const figure = new Figure(this.shape!, model.actor(1));
+    const count = Math.max(this.running().length, 1);
+    while (this.figures.length < count) {
+      const figure = new Figure(this.shape!, model.actor(this.figures.length));
       this.figures.push(figure);
       this.view.content.add(figure.mesh);
     }
-    if (!second && this.figures.length > 1) {
-      const figure = this.figures.pop()!;
+    for (const figure of this.figures.splice(count)) {
       this.view.content.remove(figure.mesh);
       figure.dispose();
     }
-    const other = this.figures[1];
-    if (other) {
-      other.ghost(!this.sideBySide);
-      const wide = this.figures[0]!.box().getSize(new Vector3());
+    this.relooked();
+    const wide = this.figures[0]!.box().getSize(new Vector3());
+    this.figures.forEach((other, index) => {
+      if (index === 0) return;
+      const tint = TINTS[(index - 1) % TINTS.length]!;
+      other.ghost(!this.sideBySide, tint);
       other.mesh.position.set(0, 0, 0);
-      if (this.sideBySide) other.mesh.position.copy(sideways(model, 1.2 * Math.max(wide.x, wide.z, 0.5)));
+      if (this.sideBySide) other.mesh.position.copy(sideways(model, index * 1.2 * Math.max(wide.x, wide.z, 0.5)));
+    });
+    this.names = [];
+    if (this.sideBySide && count > 1) {
+      const up = model.about.up;
+      this.names = this.running().map((index, which) => {
+        const figure = this.figures[which]!;
+        const high = figure.box().max[up] + 0.04 * (wide[up] || 1) - figure.actor.world(0, [0, 0, 0])[up === "y" ? 1 : 2];
+        return { figure, text: this.motions[index]?.name ?? "pose", high };
+      });
     }
     const seen = this.seen();
     this.marks = seen.flatMap((motion) => motion.spans);
@@ -279,14 +341,21 @@ export class App {
 
   /** The motions that are seen. */
   seen(): Motion[] {
-    return this.chosen.flatMap((index) => this.motions[index] ?? []);
+    return this.running().flatMap((index) => this.motions[index] ?? []);
+  }
+
+  /** The motions that are seen, by their numbers: one for each figure. */
+  private running(): number[] {
+    const [first, second] = this.chosen;
+    const others = second === -2 ? [...this.motions.keys()].filter((index) => index !== first) : [second];
+    return [first, ...others].filter((index, which) => (which === 0 && others.some((other) => other >= 0)) || index >= 0);
   }
 
   /** The time has changed. */
   timed(): void {
     const { model } = this;
     if (!model) return;
-    this.chosen.forEach((index, which) => {
+    this.running().forEach((index, which) => {
       const motion = this.motions[index];
       if (!motion || motion.times.length === 0) return;
       const actor = model.actor(which);
@@ -379,6 +448,9 @@ function named(model: Model): Map<string, Float64Array> {
   const value = (place: number, kind: string) => asked.slice(place, place + (kind === "orientation" ? 4 : 1));
   return new Map(model.about.coordinates.map((c) => [c.key, value(c.place, c.kind)]));
 }
+
+/** Colours that are laid over figures beside the first one. */
+const TINTS = [0x86b4ff, 0xffb877, 0x9fdc8c, 0xd9a8ff, 0xff9fae, 0x7fd8d8];
 
 function sideways(model: Model, by: number): Vector3 {
   const up = model.about.up === "y" ? new Vector3(0, 1, 0) : new Vector3(0, 0, 1);

@@ -58,6 +58,7 @@ export class Inspector {
       const choice = (which: 0 | 1, none: string) => {
         const select = element("select", { "aria-label": which === 0 ? "motion" : "second motion", "data-which": which });
         select.append(element("option", { value: -1 }, none));
+        if (which === 1 && motions.length > 2) select.append(element("option", { value: -2, selected: chosen[1] === -2 }, "all others"));
         motions.forEach((motion, index) => select.append(element("option", { value: index, selected: chosen[which] === index }, motion.name)));
         select.addEventListener("change", () => {
           this.app.chosen[which] = Number(select.value);

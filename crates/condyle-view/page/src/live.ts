@@ -3,6 +3,7 @@
 import { carried } from "./again";
 import type { App } from "./app";
 import { trackAgain } from "./aside";
+import { looks } from "./looks";
 import { served } from "./session";
 
 interface Told {
@@ -29,6 +30,8 @@ async function again(app: App): Promise<void> {
   const { name, format, text } = session.model;
   const before = app.model?.about;
   const seen = app.chosen.map((which) => app.motions[which]?.name);
+  // None, or all in a row.
+  const second = Math.min(app.chosen[1], -1);
   const old = app.motions;
   const taken = app.core.take(`${name}.${format}`, new TextEncoder().encode(text), null);
   if (!taken.model) return;
@@ -37,8 +40,9 @@ async function again(app: App): Promise<void> {
   const { motions, said } = before ? carried(dropped, before, taken.model.about) : { motions: [], said: [] };
   app.open(taken.model, session.title, [...session.motions, ...motions], true);
   const index = (wanted: string | undefined) => app.motions.findIndex((motion) => motion.name === wanted);
-  if (seen[0] !== undefined && index(seen[0]) >= 0) app.chosen = [index(seen[0]), seen[1] === undefined ? -1 : index(seen[1])];
+  if (seen[0] !== undefined && index(seen[0]) >= 0) app.chosen = [index(seen[0]), seen[1] === undefined ? second : index(seen[1])];
   app.motionsChanged();
+  app.dress(await looks(session.model.geometry));
   app.timed();
   if (said.length > 0) app.say(said);
   const shown = app.motions[app.chosen[0]];

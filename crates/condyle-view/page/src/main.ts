@@ -5,6 +5,7 @@ import { authoring } from "./authoring";
 import { Core } from "./core";
 import { byId } from "./dom";
 import { live } from "./live";
+import { looks } from "./looks";
 import { pointer } from "./pointer";
 import { evaluator, session } from "./session";
 import { tools } from "./tools";
@@ -34,6 +35,7 @@ async function start(): Promise<void> {
     }
   });
   byId("waiting").hidden = true;
+  await app.attempt(async () => app.dress(await looks(given.model?.geometry)));
   if (given.mode !== "exported") dropping(app);
   if (given.mode === "served") live(app);
   if (given.mode === "served" && given.editable) authoring(app);

@@ -1,11 +1,12 @@
 // What the page is given to show: inside the page, from the server beside it, or nothing.
 
+import type { Given } from "./looks";
 import { type Motion, type PackedMotion, bytesOf, unpacked } from "./core";
 
 export interface Session {
   mode: "served" | "exported" | "static";
   title: string;
-  model: { name: string; format: string; text: string; geometry: Record<string, string> } | null;
+  model: { name: string; format: string; text: string; geometry?: Given } | null;
   motions: Motion[];
   editable: boolean;
   source: string | null;

@@ -3,6 +3,7 @@
 import type { App } from "./app";
 import { byId, element } from "./dom";
 import { save } from "./files";
+import { LOOKS } from "./looks";
 import { KINDS } from "./signs";
 import { VIEWS } from "./view";
 
@@ -31,6 +32,18 @@ export function tools(app: App, dragging: { on: boolean }): void {
     box.addEventListener("change", () => app.toggle(kind));
     app.onchange.push(() => (box.checked = app.show.has(kind)));
     return element("label", {}, box, ` ${kind}`);
+  });
+
+  // What a file brings along is seen or not; without such, bones alone are there.
+  const looks = LOOKS.map((look) => {
+    const box = element("input", { type: "checkbox", "data-show": look });
+    box.addEventListener("change", () => app.looksLike(look));
+    const label = element("label", {}, box, ` ${look}`);
+    app.onchange.push(() => {
+      box.checked = app.looked.has(look);
+      label.hidden = !app.lookable.includes(look);
+    });
+    return label;
   });
 
   const limits = button("limits hold", "whether limits hold what is asked (l)", () => app.limits(!app.withinLimits), { id: "limits" });
@@ -66,7 +79,7 @@ export function tools(app: App, dragging: { on: boolean }): void {
     open,
     shipped,
     view,
-    menu("show", ...kinds),
+    menu("show", ...looks, ...kinds),
     limits,
     drag,
     button("key", "keep the pose as a key at the timeline's time (p)", () => app.keys.set(), { id: "key" }),

@@ -8,7 +8,7 @@
 //!
 //! ```text
 //! GET  /TOKEN/                 the page          GET  /TOKEN/assets/NAME   its files
-//! GET  /TOKEN/session.json     what it shows     GET  /TOKEN/files/NAME    meshes that the model names
+//! GET  /TOKEN/session.json     what it shows     GET  /TOKEN/files/NAME    meshes and skins of the model
 //! GET  /TOKEN/editable.json    numbers of the model's text
 //! GET  /TOKEN/events           server-sent events: the model changed, its file is wrong, it is mended
 //! POST /TOKEN/edit, add, undo, redo
