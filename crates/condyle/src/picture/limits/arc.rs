@@ -9,7 +9,8 @@ use condyle_math::Vec3;
 use condyle_model::{CoordinateId, CoordinateKind, SegmentId};
 use condyle_render::{Line, Scene, Surface, palette, shape};
 
-/// Draws the range of a coordinate, if it has one: where a limit ends it earlier, the rest is grey.
+/// Draws the range of a coordinate, if it has one: where a limit ends it earlier, the rest is grey,
+/// as is a range that is not enforced.
 pub(super) fn draw(
     figure: &Figure,
     sweep: &mut Sweep,
@@ -38,6 +39,8 @@ pub(super) fn draw(
         }
         Motion::Glide { .. } => (figure.joint(segment).translation, None),
     };
+    // A range that is not enforced is told in grey.
+    let enforced = figure.model.coordinate(id).range.enforced;
     // The point goes with the segment; the way is seen from the base as it stands now.
     let own = figure.pose.segment(segment).linear.inverse()
         * (point - figure.pose.segment(segment).translation);
@@ -46,7 +49,7 @@ pub(super) fn draw(
         let at = sweep.at(id, value)?;
         let moved = at.pose.segment(segment) * own;
         let place = now * (at.pose.frame(base).rigid_inverse() * moved);
-        place.is_finite().then_some((at.legal, place))
+        place.is_finite().then_some((enforced && at.legal, place))
     };
     let mut runs: Vec<(bool, Vec<Vec3>)> = vec![];
     let mut before: Option<(f64, bool)> = None;

@@ -4,7 +4,11 @@
 mod arc;
 mod cone;
 mod ellipse;
+#[cfg(test)]
+mod enforced;
 mod field;
+mod reach;
+mod twist;
 
 pub use field::Reaches;
 
