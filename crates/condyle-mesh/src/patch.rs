@@ -24,8 +24,8 @@ const APART: f64 = 1e-3;
 const STEP: f64 = 1e-6;
 const STEPS: usize = 60;
 /// A boundary that is farther than this from the arc between two of its corners gets another, in radians, so often.
-const BEND: f64 = 1e-3;
-const BENDS: u32 = 5;
+const BEND: f64 = 5e-4;
+const BENDS: u32 = 6;
 /// A distance rises by no more than this per radian, what rounds it included.
 const STEEPEST: f64 = 1.5;
 /// Triangles are cut in four no more often: 655 362 corners.

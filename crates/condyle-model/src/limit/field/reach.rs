@@ -18,10 +18,12 @@ pub struct Fibre {
     pub width: f64,
 }
 
-/// Twists that are asked first.
-const TWISTS: usize = 36;
+/// Twists at which the distance is known; every other one is asked only where it may matter, by how much a distance may rise per
+/// radian.
+const TWISTS: usize = 72;
+const STEEPEST: f64 = 1.5;
 /// The most peaks that are refined, to this part of a radian, in so many steps.
-const PEAKS: usize = 3;
+const PEAKS: usize = 4;
 const NEAR: f64 = 2e-4;
 const STEPS: usize = 24;
 /// Steps to where the distance is zero between two twists.
@@ -48,8 +50,18 @@ pub fn fibre(distance: &dyn Fn(Quat) -> f64, bone: Vec3, direction: Vec3) -> Fib
     let step = TAU / TWISTS as f64;
     let twist = |i: usize| step * i as f64 - PI;
     let mut values = [0.0; TWISTS];
-    for (i, value) in values.iter_mut().enumerate() {
-        *value = at(twist(i));
+    let mut best = f64::NEG_INFINITY;
+    for i in (0..TWISTS).step_by(2) {
+        values[i] = at(twist(i));
+        best = best.max(values[i]);
+    }
+    for i in (1..TWISTS).step_by(2) {
+        let (before, after) = (values[i - 1], values[(i + 1) % TWISTS]);
+        let [low, high] = [before.min(after), before.max(after)];
+        let (least, most) = (low - STEEPEST * step, high + STEEPEST * step);
+        let matters = most >= best || (least < 0.0 && most >= 0.0);
+        values[i] = if matters { at(twist(i)) } else { 0.5 * (low + high) };
+        best = best.max(values[i]);
     }
     let value = |i: usize| values[i % TWISTS];
     let mut width = 0.0;
@@ -131,10 +143,18 @@ fn highest(at: &dyn Fn(f64) -> f64, twist: f64, height: f64, step: f64) -> (f64,
         let by = if move_by.abs() >= NEAR { move_by } else { NEAR.copysign(move_by) };
         let there = (x.0 + by, at(x.0 + by));
         if there.1 >= x.1 {
-            if by >= 0.0 { low = x.0 } else { high = x.0 }
+            if by >= 0.0 {
+                low = x.0
+            } else {
+                high = x.0
+            }
             (v, w, x) = (w, x, there);
         } else {
-            if by < 0.0 { low = there.0 } else { high = there.0 }
+            if by < 0.0 {
+                low = there.0
+            } else {
+                high = there.0
+            }
             if there.1 >= w.1 || w.0 == x.0 {
                 (v, w) = (w, there);
             } else if there.1 >= v.1 || v.0 == x.0 || v.0 == w.0 {

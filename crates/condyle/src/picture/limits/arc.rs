@@ -72,6 +72,12 @@ pub(super) fn draw(
         }
         before = Some((value, legal));
     }
+    // What moves nothing is not seen: a scale about the joint.
+    let first = runs.first().and_then(|(_, run)| run.first().copied());
+    let moves = |p: &Vec3| first.is_some_and(|first| (*p - first).norm() > 1e-6);
+    if !runs.iter().flat_map(|(_, run)| run).any(moves) {
+        runs.clear();
+    }
     for (legal, run) in &runs {
         let (width, colour) = match (legal, centre) {
             (false, _) => (1.5, palette::LEADER),
@@ -133,7 +139,10 @@ fn tidy(x: f64) -> f64 {
 
 /// What a coordinate moves, and in what: the segment of its joint set that carries most others, of those that
 /// turn or glide at least half as much as any in the parent of the first.
-fn moved(figure: &Figure, id: CoordinateId) -> Option<(SegmentId, Option<SegmentId>, Motion)> {
+pub(super) fn moved(
+    figure: &Figure,
+    id: CoordinateId,
+) -> Option<(SegmentId, Option<SegmentId>, Motion)> {
     let model = figure.model;
     let direction = model.tangent_range(id).start;
     let set = model.coordinate(id).joint_set;

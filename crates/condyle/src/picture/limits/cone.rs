@@ -2,6 +2,7 @@
 //! tells how far the bone may twist there: yellow the least of this cone, green-blue the most.
 
 use super::super::figure::Figure;
+use super::ellipse::bounded;
 use super::reach::Reach;
 use super::twist::Twist;
 use super::{OPACITY, fan, value};
@@ -15,6 +16,8 @@ use std::f64::consts::TAU;
 
 /// Parts of the way from rest to the boundary.
 const RINGS: usize = 12;
+/// Corners are 2 degrees apart where ranges cut the cone.
+const LEVEL: u32 = 5;
 /// Pieces of the boundary are at most so long, in radians.
 const PIECE: f64 = 0.07;
 
@@ -34,7 +37,7 @@ pub(super) fn draw(figure: &Figure, bound: &Bound, law: &JointCone, scene: &mut 
     let radius = (0.45 * bone).clamp(1.5 * figure.unit, 4.0 * figure.unit);
     let place = |direction: Vec3| centre + frame * direction * radius;
     let cone = &law.cone;
-    let reach = Reach::of_cone(cone);
+    let reach = Ranged::of(figure, bound, law).map_or_else(|| Reach::of_cone(cone), |r| r.reach());
     reach.draw(&place, scene);
     for edge in reach.edges() {
         let edge: Vec<Vec3> = edge.into_iter().map(place).collect();
@@ -51,6 +54,66 @@ pub(super) fn draw(figure: &Figure, bound: &Bound, law: &JointCone, scene: &mut 
     if let (true, Some((span, _))) = (twisting, cone.twist_bounds(direction)) {
         let turn = Twist::of(rest, rotation);
         turn.draw(&|v| frame * v, now, 0.3 * radius, &[span], scene);
+    }
+}
+
+/// Ranges of the two angles that say where a bone points, where they end earlier than the cone.
+struct Ranged<'a> {
+    cone: &'a Cone,
+    axes: [Vec3; 3],
+    ranges: [[f64; 2]; 2],
+}
+
+impl<'a> Ranged<'a> {
+    /// `None` where they take nothing of the cone, or the bone's direction is not that of two angles about axes across each
+    /// other.
+    fn of(figure: &Figure, bound: &Bound, law: &'a JointCone) -> Option<Self> {
+        let rest = law.cone.rest().normalized();
+        let axes = match law.of {
+            Swinging::Angles(axes) => axes.map(Vec3::normalized),
+            Swinging::Directions([a, b]) => [a.normalized(), b.normalized(), rest],
+            Swinging::Orientation => return None,
+        };
+        let [a, b, c] = axes;
+        if a.dot(b).abs() > 1e-6 || c.dot(b).abs() > 1e-6 || c.cross(rest).norm() > 1e-6 {
+            return None;
+        }
+        let inputs = &figure.model.components()[bound.component.index()].inputs;
+        let range = |i: usize| Some(bounded(figure, *inputs.get(i)?)?.1);
+        let free = [f64::NEG_INFINITY, f64::INFINITY];
+        let ranges = [0, 1].map(|i| range(i).unwrap_or(free));
+        let ranged = Self { cone: &law.cone, axes, ranges };
+        let rings = Reach::of_cone(&law.cone).patch.corners;
+        rings.iter().any(|v| ranged.room(*v) < -1e-6).then_some(ranged)
+    }
+
+    /// How far a direction is inside the ranges, in radians; negative outside.
+    fn room(&self, direction: Vec3) -> f64 {
+        let [a, b, c] = self.axes;
+        let w = if c.dot(self.cone.rest()) < 0.0 { -direction } else { direction };
+        let lead = b.dot(a.cross(c)).atan2(a.dot(c));
+        let (along, up, side) = (w.dot(a), w.dot(b), w.dot(a.cross(b)));
+        let sine = up.hypot(side);
+        let inside = |angle: f64, [low, high]: [f64; 2]| {
+            if high - low >= TAU {
+                return f64::INFINITY;
+            }
+            let middle = 0.5 * (low + high);
+            let off = angle - middle;
+            0.5 * (high - low) - (off - (off / TAU).round() * TAU).abs()
+        };
+        // Two pairs of angles point there.
+        let room = |sign: f64| {
+            // Near the first axis its angle matters little.
+            let first = inside((sign * up).atan2(-sign * side), self.ranges[0]) * sine;
+            first.min(inside((sign * sine).atan2(along) - lead, self.ranges[1]))
+        };
+        room(1.0).max(room(-1.0))
+    }
+
+    fn reach(&self) -> Reach {
+        let value = |v: Vec3| self.cone.distance(v).0.min(self.room(v));
+        Reach::of_patch(self.cone, Patch::of(&value, LEVEL))
     }
 }
 
@@ -88,6 +151,10 @@ impl Reach {
             }
         }
         patch.edges = (0..around).map(|i| [corner(RINGS, i), corner(RINGS, i + 1)]).collect();
+        Self::of_patch(cone, patch)
+    }
+
+    fn of_patch(cone: &Cone, patch: Patch) -> Self {
         let width = |v: &Vec3| cone.twist_bounds(*v).map_or(TAU, |([low, high], _)| high - low);
         let widths = patch.corners.iter().map(width).collect();
         Self { patch, widths }
@@ -105,7 +172,7 @@ fn between(from: Vec3, to: Vec3, share: f64) -> Vec3 {
 }
 
 /// The rotation that a cone limits, of the numbers at its ports.
-fn rotation(law: &JointCone, numbers: &[f64]) -> Option<Mat3> {
+pub(super) fn rotation(law: &JointCone, numbers: &[f64]) -> Option<Mat3> {
     let turn =
         |(axis, angle): (&Vec3, &f64)| Mat3::rotation_about(axis.normalized(), angle.sin_cos());
     let product = |axes: &[Vec3]| {
@@ -164,7 +231,7 @@ pub(super) fn frame(
 }
 
 /// How far a rotation is from what a cone speaks of: in all, or in where the bone points.
-fn off(law: &JointCone, own: Mat3, said: Mat3) -> f64 {
+pub(super) fn off(law: &JointCone, own: Mat3, said: Mat3) -> f64 {
     match law.of {
         Swinging::Directions(_) => {
             let rest = law.cone.rest().normalized();
@@ -291,14 +358,19 @@ mod tests {
                     let [a, b, c] = corners;
                     for place in [a, b, c, a + b, a + b + c, a * 3.0 + b + c] {
                         // A little inward: on the boundary itself rounding decides.
-                        let direction = (place.normalized() + law.cone.rest().normalized() * 1e-9).normalized();
+                        let direction =
+                            (place.normalized() + law.cone.rest().normalized() * 1e-9).normalized();
                         let ([from, to], _) = law.cone.twist_bounds(direction).expect("bounds");
                         let share = (to - from - low) / (high - low);
                         let colour = Reach::colour(share.clamp(0.0, 1.0));
                         for (shown, told) in surface.colour.into_iter().zip(colour) {
                             let most = f64::from(palette::LIMIT_LOW[0].abs_diff(palette::LIMIT[0]));
                             let off = f64::from(shown.abs_diff(told)) / most;
-                            assert!(off < 0.5 / 16.0 + 0.03, "{}: {off} of the scale", component.name);
+                            assert!(
+                                off < 0.5 / 16.0 + 0.03,
+                                "{}: {off} of the scale",
+                                component.name
+                            );
                         }
                         seen += 1;
                     }

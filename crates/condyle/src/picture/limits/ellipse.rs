@@ -69,7 +69,7 @@ impl<'a> Around<'a> {
 
 /// The coordinate that a port reads, and between which ends it may be: those of its range, and those that other
 /// coordinates leave of it now.
-fn bounded(figure: &Figure, port: Signal) -> Option<(CoordinateId, [f64; 2])> {
+pub(super) fn bounded(figure: &Figure, port: Signal) -> Option<(CoordinateId, [f64; 2])> {
     let components = figure.model.components();
     let (mut signal, mut ends) = (port, [f64::NEG_INFINITY, f64::INFINITY]);
     let mut narrow = |low: Option<f64>, high: Option<f64>| {
@@ -165,7 +165,7 @@ pub(super) fn draw(
 }
 
 /// The last segment of their joint set that both coordinates turn.
-fn moved_last(figure: &Figure, ids: [CoordinateId; 2]) -> Option<SegmentId> {
+pub(super) fn moved_last(figure: &Figure, ids: [CoordinateId; 2]) -> Option<SegmentId> {
     let model = figure.model;
     let moves = |segment: SegmentId, id: CoordinateId| {
         let direction = model.tangent_range(id).start;

@@ -51,7 +51,7 @@ pub(super) fn draw(figure: &Figure, bound: &Bound, law: &FieldLimit, scene: &mut
     turn.draw(&|v| frame * v, tip, 0.3 * radius, &spans, scene);
 }
 
-fn rotation(numbers: &[f64]) -> Option<Mat3> {
+pub(super) fn rotation(numbers: &[f64]) -> Option<Mat3> {
     let &[x, y, z, w, ..] = numbers else { return None };
     let q = Quat { x, y, z, w };
     let length = q.dot(q);
@@ -60,7 +60,7 @@ fn rotation(numbers: &[f64]) -> Option<Mat3> {
 
 /// The segment that is turned and the frame in the world in which it is: said by the segments that are measured, or found as that
 /// of a cone.
-fn turned(figure: &Figure, bound: &Bound, now: Mat3) -> Option<(SegmentId, Mat3)> {
+pub(super) fn turned(figure: &Figure, bound: &Bound, now: Mat3) -> Option<(SegmentId, Mat3)> {
     let components = figure.model.components();
     let component = &components[bound.component.index()];
     if let Some(Signal::Output(id, _)) = component.inputs.first() {
@@ -211,8 +211,8 @@ mod tests {
                 let at = (ends[0] * (1.0 - share) + ends[1] * share).normalized();
                 let out = along.cross(at).normalized() * 0.1f64.to_radians();
                 count += 1;
-                wrong += usize::from(!allowed((at - out).normalized()));
-                wrong += usize::from(allowed((at + out).normalized()));
+                let judged = [at - out, at + out].map(|to| allowed(to.normalized()));
+                wrong += usize::from(judged != [true, false]);
             }
         }
         assert!(count > 100, "{count}");
@@ -267,7 +267,10 @@ mod tests {
             let arm = q.to_mat3() * -Vec3::Y;
             assert!((tip.normalized() - arm).norm() < 1e-9);
             // All of it on one sphere about the joint.
-            let edges = scene.lines.iter().filter(|line| line.colour == palette::LIMIT && line.width == 2.0);
+            let edges = scene
+                .lines
+                .iter()
+                .filter(|line| line.colour == palette::LIMIT && line.width == 2.0);
             let points = edges.flat_map(|line| &line.points);
             assert!(points.clone().count() > 50);
             for point in points {

@@ -14,7 +14,7 @@ const HALVINGS: usize = 13;
 
 /// A rotation as a shortest swing and a twist before it about the bone.
 pub(super) struct Twist {
-    bone: Vec3,
+    pub(super) bone: Vec3,
     swing: Quat,
     /// In radians, from -π to π.
     now: f64,
@@ -33,7 +33,7 @@ impl Twist {
     }
 
     /// The rotation with another twist.
-    fn with(&self, twist: f64) -> Quat {
+    pub(super) fn with(&self, twist: f64) -> Quat {
         self.swing * Quat::from_axis_angle(self.bone, twist)
     }
 
@@ -81,9 +81,8 @@ impl Twist {
         let at = |twist: f64| tip + turned(self.with(twist).to_mat3() * side) * radius;
         for [low, high] in spans {
             let pieces = ((high - low) / PIECE).ceil().max(1.0);
-            let path: Vec<Vec3> = (0..=pieces as usize)
-                .map(|i| at(low + (high - low) * i as f64 / pieces))
-                .collect();
+            let path: Vec<Vec3> =
+                (0..=pieces as usize).map(|i| at(low + (high - low) * i as f64 / pieces)).collect();
             scene.surfaces.push(fan(tip, &path, palette::LIMIT));
             if high - low < TAU - 1e-6 {
                 for end in [path[0], path[path.len() - 1]] {
