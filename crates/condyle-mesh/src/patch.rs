@@ -32,6 +32,13 @@ const STEEPEST: f64 = 1.5;
 const DEEPEST: u32 = 8;
 
 impl Patch {
+    /// Along these directions, and against them, there are corners at every level: (0, ±1, (1 + √5)/2). Between the two
+    /// others follow each other.
+    pub const CORNERS: [Vec3; 2] = [
+        Vec3 { x: 0.0, y: 1.0, z: 1.618_033_988_749_895 },
+        Vec3 { x: 0.0, y: -1.0, z: 1.618_033_988_749_895 },
+    ];
+
     /// The part where `value` is positive; each triangle of an icosahedron is cut in four `level` times (5: corners 2 degrees
     /// apart; at most 8).
     ///

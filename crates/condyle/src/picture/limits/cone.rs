@@ -12,7 +12,7 @@ use condyle_model::component::{JointCone, Swinging};
 use condyle_model::evaluate::Bound;
 use condyle_model::{Cone, Mode, Pose, SegmentId};
 use condyle_render::{Scene, Surface, palette, shape};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Parts of the way from rest to the boundary.
 const RINGS: usize = 12;
@@ -112,8 +112,27 @@ impl<'a> Ranged<'a> {
     }
 
     fn reach(&self) -> Reach {
-        let value = |v: Vec3| self.cone.distance(v).0.min(self.room(v));
-        Reach::of_patch(self.cone, Patch::of(&value, LEVEL))
+        // What ranges of the first angle take ends in a point at its axis: a corner has to be there, and one in its midst, so
+        // that it is found.
+        let [a, b, c] = self.axes;
+        let side = if c.dot(self.cone.rest()) < 0.0 { -1.0 } else { 1.0 };
+        let middle = 0.5 * (self.ranges[0][0] + self.ranges[0][1]);
+        let middle = if middle.is_finite() { middle } else { 0.0 };
+        let gap = Mat3::rotation_about(a, (middle + PI).sin_cos()) * b.cross(a);
+        let frame = |at: Vec3, toward: Vec3| {
+            let at = at.normalized();
+            let along = (toward - at * toward.dot(at)).normalized();
+            Mat3::from_columns(at, along, at.cross(along))
+        };
+        let [from, next] = Patch::CORNERS;
+        let turned = frame(a * side, gap * side) * frame(from, next).transpose();
+        let value = |v: Vec3| {
+            let v = turned * v;
+            self.cone.distance(v).0.min(self.room(v))
+        };
+        let mut patch = Patch::of(&value, LEVEL);
+        patch.corners.iter_mut().for_each(|v| *v = turned * *v);
+        Reach::of_patch(self.cone, patch)
     }
 }
 

@@ -12,6 +12,13 @@ const PIECE: f64 = 0.07;
 const ASKED: usize = 72;
 const HALVINGS: usize = 13;
 
+/// The shortest swing from one direction to another, both of length 1; of opposite ones any.
+fn shortest(from: Vec3, to: Vec3) -> Quat {
+    let across = from.cross(to);
+    let axis = if across.norm() > 1e-9 { across.normalized() } else { shape::across(from)[0] };
+    Quat::from_axis_angle(axis, across.norm().atan2(from.dot(to)))
+}
+
 /// A rotation as a shortest swing and a twist before it about the bone.
 pub(super) struct Twist {
     pub(super) bone: Vec3,
@@ -24,9 +31,7 @@ impl Twist {
     /// The twist of a rotation about a bone of length 1.
     pub(super) fn of(bone: Vec3, rotation: Mat3) -> Self {
         let to = rotation * bone;
-        let across = bone.cross(to);
-        let axis = if across.norm() > 1e-9 { across.normalized() } else { shape::across(bone)[0] };
-        let swing = Quat::from_axis_angle(axis, across.norm().atan2(bone.dot(to)));
+        let swing = shortest(bone, to);
         let [side, _] = shape::across(bone);
         let left = swing.to_mat3().transpose() * rotation * side;
         Self { bone, swing, now: bone.dot(side.cross(left)).atan2(side.dot(left)) }
