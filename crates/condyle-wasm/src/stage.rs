@@ -98,6 +98,7 @@ impl Stage {
             "describe" => Ok(self.described()),
             "bones" => Ok(self.bones()),
             "signs" => self.signs(&question).map_err(|error| fault(&error)),
+            "rotations" => self.rotations(&question).map_err(|error| fault(&error)),
             "network" => self.network(&question),
             "live" => self.live(&question),
             "drag" => self.dragged(&question),
@@ -192,7 +193,9 @@ mod tests {
         for question in ["", "{", "[]", "{}", r#"{"ask": 3}"#, r#"{"ask": "all"}"#] {
             assert!(stage.ask(question).is_err(), "{question}");
         }
-        for ask in ["describe", "bones", "signs", "network", "live", "drag", "check", "save"] {
+        for ask in
+            ["describe", "bones", "signs", "rotations", "network", "live", "drag", "check", "save"]
+        {
             // Without what belongs to it, a question has some answer or a fault, and no panic.
             let _ = stage.ask(&format!(r#"{{"ask": "{ask}"}}"#));
         }

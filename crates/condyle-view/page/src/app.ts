@@ -10,6 +10,7 @@ import { History } from "./history";
 import { Inspector } from "./inspector";
 import { Labels } from "./labels";
 import { Markers } from "./markers";
+import type { Quaternions } from "./quaternions";
 import type { Session } from "./session";
 import { type Kind, Signs } from "./signs";
 import { Sliders } from "./sliders";
@@ -28,6 +29,7 @@ export class App {
   readonly inspector: Inspector;
   model: Model | null = null;
   title = "condyle";
+  quaternions: Quaternions | null = null;
   motions: Motion[] = [];
   /** Which motion drives the figure, and which the second one; -1 is none. */
   chosen: [number, number] = [-1, -1];

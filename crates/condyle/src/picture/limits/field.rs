@@ -4,9 +4,9 @@ use super::super::figure::Figure;
 use super::cone::{Said, frame};
 use super::reach::Reach;
 use super::twist::Twist;
-use super::value;
+use super::{Judged, value};
 use condyle_math::{Mat3, Quat, Vec3};
-use condyle_mesh::Patch;
+use condyle_mesh::{Mesh, Patch};
 use condyle_model::component::FieldLimit;
 use condyle_model::evaluate::Bound;
 use condyle_model::limit::MOST_LIMITED;
@@ -20,6 +20,31 @@ use std::rc::Rc;
 
 /// Corners are 2 degrees apart.
 const LEVEL: u32 = 5;
+
+impl Reaches {
+    /// The boundary of a limit of rotations, made when it is first asked for.
+    pub(in super::super) fn boundary_of(
+        &self,
+        judged: &Judged,
+        make: impl FnOnce(&dyn Fn(Quat) -> f64) -> Mesh,
+    ) -> Rc<Mesh> {
+        let component = judged.bound.component;
+        let same = |(of, others, _): &&Boundary| {
+            let near = |(a, b): (&f64, &f64)| (a - b).abs() < SAME;
+            *of == component && others.iter().zip(judged.others()).all(near)
+        };
+        if let Some((.., known)) = self.boundaries.borrow().iter().find(same) {
+            return known.clone();
+        }
+        let made = Rc::new(make(&|q| judged.distance(q)));
+        let mut kept = self.boundaries.borrow_mut();
+        if kept.len() >= MOST_KEPT {
+            kept.remove(0);
+        }
+        kept.push((component, judged.others().to_vec(), made.clone()));
+        made
+    }
+}
 
 /// Draws the reach of a field.
 pub(super) fn draw(figure: &Figure, bound: &Bound, law: &FieldLimit, scene: &mut Scene) {
@@ -82,7 +107,13 @@ pub(super) fn turned(figure: &Figure, bound: &Bound, now: Mat3) -> Option<(Segme
 /// What learned limits reach, for who draws them again and again: to work it out takes a moment, and it changes only with what
 /// else the limit depends on.
 #[derive(Debug, Default)]
-pub struct Reaches(RefCell<Vec<Kept>>);
+pub struct Reaches {
+    kept: RefCell<Vec<Kept>>,
+    boundaries: RefCell<Vec<Boundary>>,
+}
+
+/// A boundary in the space of quaternions: of a component, with the numbers beside the rotation.
+type Boundary = (ComponentId, Vec<f64>, Rc<Mesh>);
 
 #[derive(Debug)]
 struct Kept {
@@ -106,11 +137,11 @@ impl Reaches {
                 && (kept.bone - bone).norm() < SAME
                 && kept.others.iter().zip(others).all(near)
         };
-        if let Some(known) = self.0.borrow().iter().find(same) {
+        if let Some(known) = self.kept.borrow().iter().find(same) {
             return known.reach.clone();
         }
         let reach = Rc::new(Reach::of_field(law, all, bone));
-        let mut kept = self.0.borrow_mut();
+        let mut kept = self.kept.borrow_mut();
         if kept.len() >= MOST_KEPT {
             kept.remove(0);
         }

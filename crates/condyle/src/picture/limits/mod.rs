@@ -7,10 +7,12 @@ mod ellipse;
 #[cfg(test)]
 mod enforced;
 mod field;
+mod judged;
 mod reach;
 mod twist;
 
 pub use field::Reaches;
+pub(super) use judged::Judged;
 
 use super::figure::Figure;
 use super::marks::line;
