@@ -1,8 +1,7 @@
 //! The part of a sphere on which a function of direction is positive.
 //!
 //! The sphere is an icosahedron whose triangles are cut in four several times. Triangles that the boundary crosses are cut there: corners
-//! on their edges and one between these are brought to the zero of the function, so that a boundary of piecewise great arcs
-//! is off by its bend within a quarter of a triangle.
+//! on their edges and between these are brought to the zero of the function, more of them where it bends.
 
 use crate::Mesh;
 use condyle_math::Vec3;
@@ -21,12 +20,25 @@ pub struct Patch {
 
 /// A corner on an edge is no nearer to an end than this share, so that no triangle is without area.
 const APART: f64 = 1e-3;
-/// How often an interval about the boundary is halved: a triangle's edge becomes a billionth.
-const HALVINGS: usize = 30;
+/// A zero is found when a step is below this share of the interval that it is sought in, or after so many steps.
+const STEP: f64 = 1e-6;
+const STEPS: usize = 60;
+/// A boundary that is farther than this from the arc between two of its corners gets another, in radians, so often.
+const BEND: f64 = 5e-4;
+const BENDS: u32 = 6;
+/// A distance rises by no more than this per radian, what rounds it included.
+const STEEPEST: f64 = 1.5;
 /// Triangles are cut in four no more often: 655 362 corners.
 const DEEPEST: u32 = 8;
 
 impl Patch {
+    /// Along these directions, and against them, there are corners at every level: (0, ±1, (1 + √5)/2). Between the two
+    /// others follow each other.
+    pub const CORNERS: [Vec3; 2] = [
+        Vec3 { x: 0.0, y: 1.0, z: 1.618_033_988_749_895 },
+        Vec3 { x: 0.0, y: -1.0, z: 1.618_033_988_749_895 },
+    ];
+
     /// The part where `value` is positive; each triangle of an icosahedron is cut in four `level` times (5: corners 2 degrees
     /// apart; at most 8).
     ///
@@ -48,8 +60,37 @@ impl Patch {
     /// ```
     #[must_use]
     pub fn of(value: &dyn Fn(Vec3) -> f64, level: u32) -> Self {
-        let (directions, triangles) = sphere(level.min(DEEPEST));
-        let values: Vec<f64> = directions.iter().map(|v| value(*v)).collect();
+        Self::cut(value, level, None)
+    }
+
+    /// The same of a signed distance in radians, positive inside: where that is far from zero it is not asked.
+    ///
+    /// It must not rise by more than 1.5 per radian.
+    ///
+    /// ```
+    /// use condyle_math::Vec3;
+    /// use condyle_mesh::Patch;
+    /// let cap = |v: Vec3| 0.5 - v.y.acos();
+    /// let (quick, whole) = (Patch::of_distance(&cap, 4), Patch::of(&cap, 4));
+    /// assert_eq!(quick.triangles, whole.triangles);
+    /// ```
+    #[must_use]
+    pub fn of_distance(value: &dyn Fn(Vec3) -> f64, level: u32) -> Self {
+        Self::cut(value, level, Some(STEEPEST))
+    }
+
+    fn cut(value: &dyn Fn(Vec3) -> f64, level: u32, steepest: Option<f64>) -> Self {
+        let Sphere { corners: directions, parents, triangles } = sphere(level.min(DEEPEST));
+        let mut values: Vec<f64> = Vec::with_capacity(directions.len());
+        for (v, parents) in directions.iter().zip(&parents) {
+            // At most so much, where both corners that it is between are far outside.
+            let most = steepest.zip(*parents).map(|(steepest, ends)| {
+                let [p, q] = ends.map(|i| i as usize);
+                let way = steepest * v.dot(directions[p]).clamp(-1.0, 1.0).acos();
+                values[p].max(values[q]) + way
+            });
+            values.push(most.filter(|most| *most < 0.0).unwrap_or_else(|| value(*v)));
+        }
         let mut cutter = Cutter {
             value,
             directions: &directions,
@@ -194,88 +235,135 @@ impl Cutter<'_> {
             return *found;
         }
         let [a, b] = [inner, outer].map(|i| self.directions[i as usize]);
+        let [from, to] = [inner, outer].map(|i| self.values[i as usize]);
         let at = |share: f64| (a * (1.0 - share) + b * share).normalized();
-        let share = self.zero(&at, 0.0, 1.0).clamp(APART, 1.0 - APART);
+        let share = self.zero(&at, (0.0, from), (1.0, to)).clamp(APART, 1.0 - APART);
         let found = self.add(at(share));
         self.cuts.insert((inner, outer), found);
         found
     }
 
-    /// Where the value turns from positive at `inside` to what is not.
-    fn zero(&self, at: &dyn Fn(f64) -> Vec3, mut inside: f64, mut outside: f64) -> f64 {
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (inside + outside);
-            if (self.value)(at(middle)) > 0.0 { inside = middle } else { outside = middle }
+    /// Where the value turns from positive at `inside` to what is not: by the line between both ends, with the
+    /// end that stays weighed less (Illinois).
+    fn zero(&self, at: &dyn Fn(f64) -> Vec3, inside: (f64, f64), outside: (f64, f64)) -> f64 {
+        let ((mut a, mut from), (mut b, mut to)) = (inside, outside);
+        let (whole, mut last, mut kept) = ((b - a).abs(), f64::INFINITY, 0i32);
+        for _ in 0..STEPS {
+            let share = from / (from - to);
+            // In the middle where the line tells nothing.
+            let share = if share > 0.0 && share < 1.0 { share } else { 0.5 };
+            let middle = a + (b - a) * share;
+            if (middle - last).abs() < STEP * whole {
+                return middle;
+            }
+            last = middle;
+            let found = (self.value)(at(middle));
+            if found > 0.0 {
+                (a, from) = (middle, found);
+                to *= if kept > 0 { 0.5 } else { 1.0 };
+                kept = 1;
+            } else {
+                (b, to) = (middle, found.min(-f64::MIN_POSITIVE));
+                from *= if kept < 0 { 0.5 } else { 1.0 };
+                kept = -1;
+            }
         }
-        0.5 * (inside + outside)
+        0.5 * (a + b)
     }
 
-    /// The part of a triangle that is inside, as a polygon with a corner more on the boundary.
+    /// The part of a triangle that is inside.
     fn triangle(&mut self, triangle: [u32; 3]) {
         let inside = triangle.map(|corner| self.inside(corner));
-        if inside == [false; 3] {
-            return;
-        }
-        let mut polygon: Vec<u32> = vec![];
-        let (mut start, mut end) = (None, None);
-        for i in 0..3 {
-            let (here, next) = (triangle[i], triangle[(i + 1) % 3]);
-            if inside[i] {
-                let kept = self.keep(here);
-                polygon.push(kept);
+        let turned = |by: usize| [0, 1, 2].map(|i| triangle[(i + by) % 3]);
+        match inside.iter().filter(|inside| **inside).count() {
+            3 => {
+                let kept = triangle.map(|corner| self.keep(corner));
+                self.patch.triangles.push(kept);
             }
-            match (inside[i], inside[(i + 1) % 3]) {
-                (true, false) => {
-                    let cut = self.cut(here, next);
-                    polygon.push(cut);
-                    start = Some((polygon.len(), cut));
-                }
-                (false, true) => {
-                    let cut = self.cut(next, here);
-                    polygon.push(cut);
-                    end = Some(cut);
-                }
-                _ => {}
+            1 => {
+                let [a, b, c] = turned(inside.iter().position(|inside| *inside).unwrap_or(0));
+                let kept = self.keep(a);
+                let (start, end) = (self.cut(a, b), self.cut(a, c));
+                let line = self.boundary(start, end);
+                self.fan(kept, &line);
             }
-        }
-        let mut first = 0;
-        if let (Some((at, from)), Some(to)) = (start, end) {
-            let between = self.between(from, to);
-            polygon.insert(at, between);
-            self.patch.edges.extend([[from, between], [between, to]]);
-            // A fan from the corner between the two: one from either would have a triangle without area.
-            first = at;
-        }
-        let count = polygon.len();
-        for step in 1..count - 1 {
-            let corner = |by: usize| polygon[(first + by) % count];
-            self.patch.triangles.push([corner(0), corner(step), corner(step + 1)]);
+            2 => {
+                let [c, a, b] = turned(inside.iter().position(|inside| !inside).unwrap_or(0));
+                let (first, second) = (self.keep(a), self.keep(b));
+                let (start, end) = (self.cut(b, c), self.cut(a, c));
+                let line = self.boundary(start, end);
+                // Both inner corners see the half that is nearer to them.
+                let (near, far) = line.split_at(line.len() / 2);
+                let middle = far[0];
+                self.patch.triangles.push([first, second, middle]);
+                self.fan(second, &[near, &[middle]].concat());
+                self.fan(first, far);
+            }
+            _ => {}
         }
     }
 
-    /// A corner on the boundary between two on it, sought to both sides of their middle.
-    fn between(&mut self, from: u32, to: u32) -> u32 {
+    /// Triangles from a corner to the pieces of a line.
+    fn fan(&mut self, corner: u32, line: &[u32]) {
+        for ends in line.windows(2) {
+            self.patch.triangles.push([corner, ends[0], ends[1]]);
+        }
+    }
+
+    /// The boundary between two corners on it, both of them included.
+    fn boundary(&mut self, start: u32, end: u32) -> Vec<u32> {
+        // Pieces that are still to be looked at, the next one last.
+        let (mut line, mut open) = (vec![start], vec![(start, end, 0)]);
+        while let Some((from, to, depth)) = open.pop() {
+            let bent = (depth < BENDS).then(|| self.between(from, to));
+            match bent {
+                // One corner at least, so that there is always a middle.
+                Some((place, off)) if depth == 0 || off > BEND => {
+                    let middle = self.add(place);
+                    let depth = if off > BEND { depth + 1 } else { BENDS };
+                    open.extend([(middle, to, depth), (from, middle, depth)]);
+                }
+                _ => {
+                    self.patch.edges.push([from, to]);
+                    line.push(to);
+                }
+            }
+        }
+        line
+    }
+
+    /// A place on the boundary between two corners on it, sought to both sides of their middle, and how far from that
+    /// it is.
+    fn between(&mut self, from: u32, to: u32) -> (Vec3, f64) {
         let [p, q] = [from, to].map(|i| self.patch.corners[i as usize]);
         let middle = (p + q).normalized();
         // To the right of the way is outside.
         let out = (q - p).cross(middle) * 0.4;
         let at = |share: f64| (middle + out * share).normalized();
-        let side = if (self.value)(middle) > 0.0 { 1.0 } else { -1.0 };
+        let here = (self.value)(middle);
+        let side = if here > 0.0 { 1.0 } else { -1.0 };
         let found = [0.25, 1.0].into_iter().find_map(|far| {
-            let there = (self.value)(at(side * far)) > 0.0;
-            match (side > 0.0, there) {
-                (true, false) => Some(self.zero(&at, 0.0, far)),
-                (false, true) => Some(self.zero(&at, -far, 0.0)),
+            let there = (self.value)(at(side * far));
+            match (side > 0.0, there > 0.0) {
+                (true, false) => Some(self.zero(&at, (0.0, here), (far, there))),
+                (false, true) => Some(self.zero(&at, (-far, there), (0.0, here))),
                 _ => None,
             }
         });
         let place = at(found.unwrap_or(0.0));
-        self.add(place)
+        (place, (place - middle).norm())
     }
 }
 
+/// A sphere in triangles; corners that were made later are between two earlier ones.
+struct Sphere {
+    corners: Vec<Vec3>,
+    parents: Vec<Option<[u32; 2]>>,
+    triangles: Vec<[u32; 3]>,
+}
+
 /// An icosahedron whose triangles are cut in four so many times.
-fn sphere(level: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+fn sphere(level: u32) -> Sphere {
     let golden = 0.5 * (1.0 + 5f64.sqrt());
     let mut corners: Vec<Vec3> = vec![];
     for (a, b) in [(1.0, golden), (-1.0, golden), (1.0, -golden), (-1.0, -golden)] {
@@ -296,6 +384,7 @@ fn sphere(level: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
             }
         }
     }
+    let mut parents = vec![None; corners.len()];
     for _ in 0..level {
         let mut middles: HashMap<(u32, u32), u32> = HashMap::new();
         let mut finer = Vec::with_capacity(4 * triangles.len());
@@ -304,6 +393,7 @@ fn sphere(level: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
                 *middles.entry((p.min(q), p.max(q))).or_insert_with(|| {
                     let middle = corners[p as usize] + corners[q as usize];
                     corners.push(middle.normalized());
+                    parents.push(Some([p, q]));
                     corners.len() as u32 - 1
                 })
             });
@@ -311,7 +401,7 @@ fn sphere(level: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
         }
         triangles = finer;
     }
-    (corners, triangles)
+    Sphere { corners, parents, triangles }
 }
 
 #[cfg(test)]

@@ -113,6 +113,7 @@ impl Stage {
             "describe" => Ok(self.described()),
             "bones" => Ok(self.bones()),
             "signs" => self.signs(&question).map_err(|error| fault(&error)),
+            "rotations" => self.rotations(&question).map_err(|error| fault(&error)),
             "network" => self.network(&question),
             "live" => self.live(&question),
             "drag" => self.dragged(&question),
@@ -216,7 +217,16 @@ mod tests {
             assert!(stage.ask(question).is_err(), "{question}");
         }
         for ask in [
-            "describe", "bones", "signs", "network", "live", "drag", "check", "save", "keys",
+            "describe",
+            "bones",
+            "signs",
+            "rotations",
+            "network",
+            "live",
+            "drag",
+            "check",
+            "save",
+            "keys",
             "keyed",
         ] {
             // Without what belongs to it, a question has some answer or a fault, and no panic.

@@ -162,7 +162,10 @@ impl FieldLimit {
         (distance, self.mirrored.map_or(slope, |at| at.turning(slope)))
     }
 
-    fn distance(&self, numbers: &[f64]) -> f64 {
+    /// The signed distance of what is at the component's ports to the boundary that is enforced, in radians, positive
+    /// inside: the limit's row without its slopes.
+    #[must_use]
+    pub fn distance(&self, numbers: &[f64]) -> f64 {
         let p = self.inward(orientation(numbers));
         if let Some((given, driver)) = self.limit.given().zip(self.driver(numbers)) {
             return given.distance(p, driver);

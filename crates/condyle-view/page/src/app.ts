@@ -13,6 +13,7 @@ import { Keys } from "./keys";
 import { Labels } from "./labels";
 import type { Look, Looks } from "./looks";
 import { Markers } from "./markers";
+import type { Quaternions } from "./quaternions";
 import { take } from "./readers";
 import type { Session } from "./session";
 import { type Kind, Signs } from "./signs";
@@ -34,6 +35,7 @@ export class App {
   readonly goals: GoalPanel;
   model: Model | null = null;
   title = "condyle";
+  quaternions: Quaternions | null = null;
   motions: Motion[] = [];
   /** Which motion drives the figure, and which the second one; -1 is none, -2 all others, each with a figure of its own. */
   chosen: [number, number] = [-1, -1];

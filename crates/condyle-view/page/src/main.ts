@@ -7,6 +7,7 @@ import { byId } from "./dom";
 import { live } from "./live";
 import { looks } from "./looks";
 import { pointer } from "./pointer";
+import { Quaternions } from "./quaternions";
 import { evaluator, session } from "./session";
 import { tools } from "./tools";
 
@@ -23,6 +24,7 @@ async function start(): Promise<void> {
   const dragging = { on: false };
   tools(app, dragging);
   pointer(app, dragging);
+  app.quaternions = new Quaternions(app);
   await app.attempt(() => {
     if (given.model) {
       const { name, format, text } = given.model;

@@ -9,6 +9,8 @@ import {
   Group,
   Mesh,
   MeshLambertMaterial,
+  Points,
+  PointsMaterial,
   type Vector2,
 } from "three";
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
@@ -16,10 +18,12 @@ import { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeometry.js";
 import type { Answer, Model, Span } from "./core";
 
-interface Packed {
+export interface Packed {
   surfaces: { positions: Span; normals: Span; triangles: Span; colour: number; opacity: number }[];
   lines: { points: Span; width: number; colour: number; opacity: number; through: number }[];
   labels: Label[];
+  clouds?: { points: Span; colour: number; size: number }[];
+  title?: string | null;
 }
 
 export interface Label {
@@ -54,13 +58,27 @@ export class Signs {
 
   /** Draws anew what is asked for. */
   update(model: Model, asked: Asked, size: Vector2): void {
+    if (asked.show.length === 0) this.clear();
+    else this.show(model.ask<Packed>("signs", asked), size);
+  }
+
+  /** Draws what the evaluator answers. */
+  show(answer: Answer<Packed>, size: Vector2): void {
     this.clear();
-    if (asked.show.length === 0) return;
-    const answer = model.ask<Packed>("signs", asked);
     this.labels = answer.value.labels;
     this.count = answer.value.surfaces.length + answer.value.lines.length;
     this.surfaces(answer);
     this.lines(answer, size);
+    for (const { points, colour, size: wide } of answer.value.clouds ?? []) {
+      const geometry = new BufferGeometry();
+      geometry.setAttribute("position", new Float32BufferAttribute(answer.floats(points), 3));
+      this.group.add(new Points(geometry, new PointsMaterial({ color: colour, size: wide, sizeAttenuation: false })));
+    }
+  }
+
+  /** The picture has another size. */
+  resized(size: Vector2): void {
+    for (const child of this.group.children) if (child instanceof LineSegments2) child.material.resolution.copy(size);
   }
 
   clear(): void {

@@ -20,6 +20,7 @@ mod figure;
 mod focus;
 mod limits;
 mod marks;
+mod quaternions;
 mod screw;
 mod sheet;
 mod show;
@@ -29,7 +30,8 @@ mod view;
 
 pub use focus::Focus;
 pub use limits::Reaches;
+pub use quaternions::Rotations;
 pub use sheet::{Posed, Sheet, draw, draw_figure};
 pub use show::Show;
-pub use signs::signs;
+pub use signs::{rotation, rotations, signs};
 pub use view::View;

@@ -18,11 +18,16 @@ pub struct Fibre {
     pub width: f64,
 }
 
-/// Twists that are asked before the deepest are refined.
+/// Twists at which the distance is known; every other one is asked only where it may matter, by how much a distance may rise per
+/// radian.
 const TWISTS: usize = 72;
-/// The most refined, and how often the interval about each is cut to two thirds.
-const PEAKS: usize = 3;
-const CUTS: usize = 12;
+const STEEPEST: f64 = 1.5;
+/// The most peaks that are refined, to this part of a radian, in so many steps.
+const PEAKS: usize = 4;
+const NEAR: f64 = 2e-4;
+const STEPS: usize = 24;
+/// Steps to where the distance is zero between two twists.
+const CUTS: usize = 3;
 
 /// The twists that a signed distance (positive inside) allows a bone along `bone` that points to `direction`; both of length 1.
 ///
@@ -45,8 +50,18 @@ pub fn fibre(distance: &dyn Fn(Quat) -> f64, bone: Vec3, direction: Vec3) -> Fib
     let step = TAU / TWISTS as f64;
     let twist = |i: usize| step * i as f64 - PI;
     let mut values = [0.0; TWISTS];
-    for (i, value) in values.iter_mut().enumerate() {
-        *value = at(twist(i));
+    let mut best = f64::NEG_INFINITY;
+    for i in (0..TWISTS).step_by(2) {
+        values[i] = at(twist(i));
+        best = best.max(values[i]);
+    }
+    for i in (1..TWISTS).step_by(2) {
+        let (before, after) = (values[i - 1], values[(i + 1) % TWISTS]);
+        let [low, high] = [before.min(after), before.max(after)];
+        let (least, most) = (low - STEEPEST * step, high + STEEPEST * step);
+        let matters = most >= best || (least < 0.0 && most >= 0.0);
+        values[i] = if matters { at(twist(i)) } else { 0.5 * (low + high) };
+        best = best.max(values[i]);
     }
     let value = |i: usize| values[i % TWISTS];
     let mut width = 0.0;
@@ -55,8 +70,8 @@ pub fn fibre(distance: &dyn Fn(Quat) -> f64, bone: Vec3, direction: Vec3) -> Fib
         let (here, next) = (value(i), value(i + 1));
         width += match (here >= 0.0, next >= 0.0) {
             (true, true) => step,
-            (true, false) => step * here / (here - next),
-            (false, true) => step * next / (next - here),
+            (true, false) => step * crossing(&at, twist(i), step, [here, next]),
+            (false, true) => step * crossing(&at, twist(i) + step, -step, [next, here]),
             (false, false) => 0.0,
         };
         if here >= next && here >= value(i + TWISTS - 1) && here > peaks[PEAKS - 1].0 {
@@ -70,18 +85,84 @@ pub fn fibre(distance: &dyn Fn(Quat) -> f64, bone: Vec3, direction: Vec3) -> Fib
         if height < best.0 - step {
             continue;
         }
-        let (mut low, mut high) = (twist(i) - step, twist(i) + step);
-        for _ in 0..CUTS {
-            let [a, b] = [low + (high - low) / 3.0, high - (high - low) / 3.0];
-            if at(a) < at(b) { low = a } else { high = b }
-        }
-        let middle = 0.5 * (low + high);
-        let found = at(middle);
-        if found > best.0 {
-            best = (found, middle);
+        let found = highest(&at, twist(i), height, step);
+        if found.0 > best.0 {
+            best = found;
         }
     }
     Fibre { deepest: best.0, at: best.1, width }
+}
+
+/// The share of a step from a twist that is valid to one that is not at which the distance is zero.
+fn crossing(at: &dyn Fn(f64) -> f64, start: f64, step: f64, [here, next]: [f64; 2]) -> f64 {
+    let ((mut low, mut from), (mut high, mut to)) = ((0.0, here), (1.0, next));
+    let mut share = from / (from - to);
+    for _ in 0..CUTS {
+        let found = at(start + step * share);
+        if found >= 0.0 {
+            (low, from, to) = (share, found, 0.5 * to);
+        } else {
+            (high, to, from) = (share, found, 0.5 * from);
+        }
+        share = low + (high - low) * from / (from - to);
+    }
+    share
+}
+
+/// The greatest distance within a step of a twist, and where, by parabolas and the golden section (Brent 1973).
+fn highest(at: &dyn Fn(f64) -> f64, twist: f64, height: f64, step: f64) -> (f64, f64) {
+    const GOLDEN: f64 = 0.381_966_011_250_105;
+    let (mut low, mut high) = (twist - step, twist + step);
+    let [mut x, mut w, mut v] = [(twist, height); 3];
+    let (mut before, mut move_by) = (0.0f64, 0.0f64);
+    for _ in 0..STEPS {
+        let middle = 0.5 * (low + high);
+        if (x.0 - middle).abs() <= 2.0 * NEAR - 0.5 * (high - low) {
+            break;
+        }
+        let mut parabola = None;
+        if before.abs() > NEAR {
+            let r = (x.0 - w.0) * (v.1 - x.1);
+            let q = (x.0 - v.0) * (w.1 - x.1);
+            let p = (x.0 - v.0) * q - (x.0 - w.0) * r;
+            let q = 2.0 * (q - r);
+            let by = -p / q;
+            let within = x.0 + by > low && x.0 + by < high;
+            if within && by.abs() < 0.5 * before.abs() {
+                let close = x.0 + by - low < 2.0 * NEAR || high - x.0 - by < 2.0 * NEAR;
+                parabola = Some(if close { NEAR.copysign(middle - x.0) } else { by });
+            }
+        }
+        (before, move_by) = match parabola {
+            Some(by) => (move_by, by),
+            None => {
+                let rest = if x.0 >= middle { low - x.0 } else { high - x.0 };
+                (rest, GOLDEN * rest)
+            }
+        };
+        let by = if move_by.abs() >= NEAR { move_by } else { NEAR.copysign(move_by) };
+        let there = (x.0 + by, at(x.0 + by));
+        if there.1 >= x.1 {
+            if by >= 0.0 {
+                low = x.0
+            } else {
+                high = x.0
+            }
+            (v, w, x) = (w, x, there);
+        } else {
+            if by < 0.0 {
+                low = there.0
+            } else {
+                high = there.0
+            }
+            if there.1 >= w.1 || w.0 == x.0 {
+                (v, w) = (w, there);
+            } else if there.1 >= v.1 || v.0 == x.0 || v.0 == w.0 {
+                v = there;
+            }
+        }
+    }
+    (x.1, x.0)
 }
 
 /// The shortest swing from one direction to another; of opposite ones any.

@@ -9,7 +9,8 @@ use condyle_math::Vec3;
 use condyle_model::{CoordinateId, CoordinateKind, SegmentId};
 use condyle_render::{Line, Scene, Surface, palette, shape};
 
-/// Draws the range of a coordinate, if it has one: where a limit ends it earlier, the rest is grey.
+/// Draws the range of a coordinate, if it has one: where a limit ends it earlier, the rest is grey,
+/// as is a range that is not enforced.
 pub(super) fn draw(
     figure: &Figure,
     sweep: &mut Sweep,
@@ -38,6 +39,8 @@ pub(super) fn draw(
         }
         Motion::Glide { .. } => (figure.joint(segment).translation, None),
     };
+    // A range that is not enforced is told in grey.
+    let enforced = figure.model.coordinate(id).range.enforced;
     // The point goes with the segment; the way is seen from the base as it stands now.
     let own = figure.pose.segment(segment).linear.inverse()
         * (point - figure.pose.segment(segment).translation);
@@ -46,7 +49,7 @@ pub(super) fn draw(
         let at = sweep.at(id, value)?;
         let moved = at.pose.segment(segment) * own;
         let place = now * (at.pose.frame(base).rigid_inverse() * moved);
-        place.is_finite().then_some((at.legal, place))
+        place.is_finite().then_some((enforced && at.legal, place))
     };
     let mut runs: Vec<(bool, Vec<Vec3>)> = vec![];
     let mut before: Option<(f64, bool)> = None;
@@ -68,6 +71,12 @@ pub(super) fn draw(
             None => runs.push((legal, vec![place])),
         }
         before = Some((value, legal));
+    }
+    // What moves nothing is not seen: a scale about the joint.
+    let first = runs.first().and_then(|(_, run)| run.first().copied());
+    let moves = |p: &Vec3| first.is_some_and(|first| (*p - first).norm() > 1e-6);
+    if !runs.iter().flat_map(|(_, run)| run).any(moves) {
+        runs.clear();
     }
     for (legal, run) in &runs {
         let (width, colour) = match (legal, centre) {
@@ -130,7 +139,10 @@ fn tidy(x: f64) -> f64 {
 
 /// What a coordinate moves, and in what: the segment of its joint set that carries most others, of those that
 /// turn or glide at least half as much as any in the parent of the first.
-fn moved(figure: &Figure, id: CoordinateId) -> Option<(SegmentId, Option<SegmentId>, Motion)> {
+pub(super) fn moved(
+    figure: &Figure,
+    id: CoordinateId,
+) -> Option<(SegmentId, Option<SegmentId>, Motion)> {
     let model = figure.model;
     let direction = model.tangent_range(id).start;
     let set = model.coordinate(id).joint_set;

@@ -2,17 +2,24 @@
 //! tells how far the bone may twist there: yellow the least of this cone, green-blue the most.
 
 use super::super::figure::Figure;
-use super::super::marks::line;
+use super::ellipse::bounded;
+use super::reach::Reach;
+use super::twist::Twist;
 use super::{OPACITY, fan, value};
 use condyle_math::{Mat3, Quat, Vec3};
+use condyle_mesh::Patch;
 use condyle_model::component::{JointCone, Swinging};
 use condyle_model::evaluate::Bound;
 use condyle_model::{Cone, Mode, Pose, SegmentId};
 use condyle_render::{Scene, Surface, palette, shape};
+use std::f64::consts::{PI, TAU};
 
-/// Parts of the way from rest to the boundary, and shades.
+/// Parts of the way from rest to the boundary.
 const RINGS: usize = 12;
-const SHADES: usize = 16;
+/// Corners are 2 degrees apart where ranges cut the cone.
+const LEVEL: u32 = 5;
+/// Pieces of the boundary are at most so long, in radians.
+const PIECE: f64 = 0.07;
 
 /// Draws a cone.
 pub(super) fn draw(figure: &Figure, bound: &Bound, law: &JointCone, scene: &mut Scene) {
@@ -30,70 +37,147 @@ pub(super) fn draw(figure: &Figure, bound: &Bound, law: &JointCone, scene: &mut 
     let radius = (0.45 * bone).clamp(1.5 * figure.unit, 4.0 * figure.unit);
     let place = |direction: Vec3| centre + frame * direction * radius;
     let cone = &law.cone;
-    let mut boundary: Vec<Vec3> = cone.boundary().collect();
-    boundary.extend(boundary.first().copied());
-    scene.surfaces.extend(sphere(cone, &boundary, &place));
-    let edge: Vec<Vec3> = boundary.iter().map(|&direction| place(direction)).collect();
-    scene.surfaces.push(fan(centre, &edge, palette::LIMIT).with_opacity(0.4 * OPACITY));
-    scene.lines.push(line(edge, 2.0, palette::LIMIT));
-    let now = place(rotation * cone.rest().normalized());
+    let reach = Ranged::of(figure, bound, law).map_or_else(|| Reach::of_cone(cone), |r| r.reach());
+    reach.draw(&place, scene);
+    for edge in reach.edges() {
+        let edge: Vec<Vec3> = edge.into_iter().map(place).collect();
+        scene.surfaces.push(fan(centre, &edge, palette::LIMIT).with_opacity(0.4 * OPACITY));
+    }
+    let rest = cone.rest().normalized();
+    let direction = rotation * rest;
+    let now = place(direction);
     scene.lines.push(value(centre, now));
     let mut mark = Surface::empty(palette::VALUE);
     shape::add_ball(&mut mark, now, 0.08 * figure.unit, (14, 10));
     scene.surfaces.push(mark);
+    let twisting = !matches!(law.of, Swinging::Directions(_));
+    if let (true, Some((span, _))) = (twisting, cone.twist_bounds(direction)) {
+        let turn = Twist::of(rest, rotation);
+        turn.draw(&|v| frame * v, now, 0.3 * radius, &[span], scene);
+    }
 }
 
-/// The part of the sphere, a surface for each shade.
-fn sphere(cone: &Cone, boundary: &[Vec3], place: &dyn Fn(Vec3) -> Vec3) -> Vec<Surface> {
-    let rest = cone.rest().normalized();
-    let width = |direction: Vec3| cone.twist_bounds(direction).map(|([low, high], _)| high - low);
-    let rows: Vec<Vec<Vec3>> = (0..=RINGS)
-        .map(|ring| {
-            let share = ring as f64 / RINGS as f64;
-            boundary.iter().map(|&end| between(rest, end, share)).collect()
-        })
-        .collect();
-    let middle = |ring: usize, i: usize| {
-        let (inner, outer) = (&rows[ring], &rows[ring + 1]);
-        (inner[i] + inner[i + 1] + outer[i] + outer[i + 1]).normalized()
-    };
-    let patches = || {
-        let along = boundary.len().saturating_sub(1);
-        (0..RINGS).flat_map(move |ring| (0..along).map(move |i| (ring, i)))
-    };
-    let widths: Vec<Option<f64>> = patches().map(|(ring, i)| width(middle(ring, i))).collect();
-    let known = || widths.iter().flatten().copied().filter(|w| w.is_finite());
-    let (low, high) = (known().fold(f64::INFINITY, f64::min), known().fold(0.0, f64::max));
-    let mut shades: Vec<Surface> = (0..SHADES)
-        .map(|shade| {
-            let share = shade as f64 / (SHADES - 1) as f64;
-            let mixed = [0, 1, 2].map(|i| {
-                let [from, to] = [palette::LIMIT_LOW[i], palette::LIMIT[i]].map(f64::from);
-                (from + (to - from) * share).round() as u8
-            });
-            Surface::empty(mixed).with_opacity(1.4 * OPACITY)
-        })
-        .collect();
-    for ((ring, i), width) in patches().zip(&widths) {
-        let share = match width {
-            Some(width) if high > low + 1e-9 => (width - low) / (high - low),
-            _ => 1.0,
+/// Ranges of the two angles that say where a bone points, where they end earlier than the cone.
+struct Ranged<'a> {
+    cone: &'a Cone,
+    axes: [Vec3; 3],
+    ranges: [[f64; 2]; 2],
+}
+
+impl<'a> Ranged<'a> {
+    /// `None` where they take nothing of the cone, or the bone's direction is not that of two angles about axes across each
+    /// other.
+    fn of(figure: &Figure, bound: &Bound, law: &'a JointCone) -> Option<Self> {
+        let rest = law.cone.rest().normalized();
+        let axes = match law.of {
+            Swinging::Angles(axes) => axes.map(Vec3::normalized),
+            Swinging::Directions([a, b]) => [a.normalized(), b.normalized(), rest],
+            Swinging::Orientation => return None,
         };
-        let shade = (share * (SHADES - 1) as f64).round().clamp(0.0, (SHADES - 1) as f64);
-        let surface = &mut shades[shade as usize];
-        let corners = [(ring, i), (ring + 1, i), (ring + 1, i + 1), (ring, i + 1)];
-        let [a, b, c, d] = corners.map(|(ring, i)| {
-            let direction = rows[ring][i];
-            let at = place(direction);
-            surface.corner(at, at - place(Vec3::ZERO))
-        });
-        if ring > 0 {
-            surface.triangles.push([a, c, d]);
+        let [a, b, c] = axes;
+        if a.dot(b).abs() > 1e-6 || c.dot(b).abs() > 1e-6 || c.cross(rest).norm() > 1e-6 {
+            return None;
         }
-        surface.triangles.push([a, b, c]);
+        let inputs = &figure.model.components()[bound.component.index()].inputs;
+        let range = |i: usize| Some(bounded(figure, *inputs.get(i)?)?.1);
+        let free = [f64::NEG_INFINITY, f64::INFINITY];
+        let ranges = [0, 1].map(|i| range(i).unwrap_or(free));
+        let ranged = Self { cone: &law.cone, axes, ranges };
+        let rings = Reach::of_cone(&law.cone).patch.corners;
+        rings.iter().any(|v| ranged.room(*v) < -1e-6).then_some(ranged)
     }
-    shades.retain(|surface| !surface.triangles.is_empty());
-    shades
+
+    /// How far a direction is inside the ranges, in radians; negative outside.
+    fn room(&self, direction: Vec3) -> f64 {
+        let [a, b, c] = self.axes;
+        let w = if c.dot(self.cone.rest()) < 0.0 { -direction } else { direction };
+        let lead = b.dot(a.cross(c)).atan2(a.dot(c));
+        let (along, up, side) = (w.dot(a), w.dot(b), w.dot(a.cross(b)));
+        let sine = up.hypot(side);
+        let inside = |angle: f64, [low, high]: [f64; 2]| {
+            if high - low >= TAU {
+                return f64::INFINITY;
+            }
+            let middle = 0.5 * (low + high);
+            let off = angle - middle;
+            0.5 * (high - low) - (off - (off / TAU).round() * TAU).abs()
+        };
+        // Two pairs of angles point there.
+        let room = |sign: f64| {
+            // Near the first axis its angle matters little.
+            let first = inside((sign * up).atan2(-sign * side), self.ranges[0]) * sine;
+            first.min(inside((sign * sine).atan2(along) - lead, self.ranges[1]))
+        };
+        room(1.0).max(room(-1.0))
+    }
+
+    fn reach(&self) -> Reach {
+        // What ranges of the first angle take ends in a point at its axis: a corner has to be there, and one in its midst, so
+        // that it is found.
+        let [a, b, c] = self.axes;
+        let side = if c.dot(self.cone.rest()) < 0.0 { -1.0 } else { 1.0 };
+        let middle = 0.5 * (self.ranges[0][0] + self.ranges[0][1]);
+        let middle = if middle.is_finite() { middle } else { 0.0 };
+        let gap = Mat3::rotation_about(a, (middle + PI).sin_cos()) * b.cross(a);
+        let frame = |at: Vec3, toward: Vec3| {
+            let at = at.normalized();
+            let along = (toward - at * toward.dot(at)).normalized();
+            Mat3::from_columns(at, along, at.cross(along))
+        };
+        let [from, next] = Patch::CORNERS;
+        let turned = frame(a * side, gap * side) * frame(from, next).transpose();
+        let value = |v: Vec3| {
+            let v = turned * v;
+            self.cone.distance(v).0.min(self.room(v))
+        };
+        let mut patch = Patch::of(&value, LEVEL);
+        patch.corners.iter_mut().for_each(|v| *v = turned * *v);
+        Reach::of_patch(self.cone, patch)
+    }
+}
+
+impl Reach {
+    /// Rings from rest to the boundary, whose edges are cut into short pieces.
+    fn of_cone(cone: &Cone) -> Self {
+        let rest = cone.rest().normalized();
+        let ends: Vec<Vec3> = cone.boundary().collect();
+        let mut boundary: Vec<Vec3> = vec![];
+        for (i, &from) in ends.iter().enumerate() {
+            let to = ends[(i + 1) % ends.len()];
+            let angle = from.cross(to).norm().atan2(from.dot(to));
+            let pieces = (angle / PIECE).ceil().max(1.0);
+            let parts = (0..pieces as usize).map(|part| part as f64 / pieces);
+            boundary.extend(parts.map(|share| between(from, to, share)));
+        }
+        let around = boundary.len();
+        let mut patch = Patch { corners: vec![rest], ..Patch::default() };
+        for ring in 1..=RINGS {
+            let share = ring as f64 / RINGS as f64;
+            patch.corners.extend(boundary.iter().map(|&end| between(rest, end, share)));
+        }
+        let corner = |ring: usize, i: usize| match ring {
+            0 => 0,
+            _ => (1 + (ring - 1) * around + i % around) as u32,
+        };
+        for ring in 0..RINGS {
+            for i in 0..around {
+                let [a, b] = [corner(ring, i), corner(ring + 1, i)];
+                let [c, d] = [corner(ring + 1, i + 1), corner(ring, i + 1)];
+                patch.triangles.push([a, b, c]);
+                if ring > 0 {
+                    patch.triangles.push([a, c, d]);
+                }
+            }
+        }
+        patch.edges = (0..around).map(|i| [corner(RINGS, i), corner(RINGS, i + 1)]).collect();
+        Self::of_patch(cone, patch)
+    }
+
+    fn of_patch(cone: &Cone, patch: Patch) -> Self {
+        let width = |v: &Vec3| cone.twist_bounds(*v).map_or(TAU, |([low, high], _)| high - low);
+        let widths = patch.corners.iter().map(width).collect();
+        Self { patch, widths }
+    }
 }
 
 /// A direction on the great arc between two.
@@ -107,7 +191,7 @@ fn between(from: Vec3, to: Vec3, share: f64) -> Vec3 {
 }
 
 /// The rotation that a cone limits, of the numbers at its ports.
-fn rotation(law: &JointCone, numbers: &[f64]) -> Option<Mat3> {
+pub(super) fn rotation(law: &JointCone, numbers: &[f64]) -> Option<Mat3> {
     let turn =
         |(axis, angle): (&Vec3, &f64)| Mat3::rotation_about(axis.normalized(), angle.sin_cos());
     let product = |axes: &[Vec3]| {
@@ -166,7 +250,7 @@ pub(super) fn frame(
 }
 
 /// How far a rotation is from what a cone speaks of: in all, or in where the bone points.
-fn off(law: &JointCone, own: Mat3, said: Mat3) -> f64 {
+pub(super) fn off(law: &JointCone, own: Mat3, said: Mat3) -> f64 {
     match law.of {
         Swinging::Directions(_) => {
             let rest = law.cone.rest().normalized();
@@ -260,9 +344,7 @@ mod tests {
         let mut turned = points.clone();
         turned.reverse();
         let cone = made(points).or_else(|_| made(turned)).expect("a cone");
-        let mut boundary: Vec<Vec3> = cone.boundary().collect();
-        boundary.push(boundary[0]);
-        let surfaces = sphere(&cone, &boundary, &|direction| direction * 2.0);
+        let surfaces = Reach::of_cone(&cone).shades(&|direction| direction * 2.0);
         let corners = || surfaces.iter().flat_map(|s| &s.positions).map(|&p| Vec3::from(p));
         assert!(corners().all(|p| (p.norm() - 2.0).abs() < 1e-12), "on the sphere");
         // The corners of the cone are 45° from rest.
@@ -274,5 +356,46 @@ mod tests {
             surfaces.iter().filter(near).map(|s| s.colour[0]).max().expect("a patch")
         };
         assert!(shade(1.4) > shade(-1.4), "{} {}", shade(1.4), shade(-1.4));
+    }
+
+    /// Of places all over a cone with twist, at corners and within triangles, the colour is that of the twist that is
+    /// enforced there, to half a shade and what is linear between corners that are a few degrees apart.
+    #[test]
+    fn the_shade_of_a_place_is_its_twist() {
+        let human = crate::shipped::read("human").expect("it is shipped").value.model;
+        let mut seen = 0;
+        for component in human.components() {
+            let Law::Cone(law) = &component.law else { continue };
+            let reach = Reach::of_cone(&law.cone);
+            let [low, high] = reach.ends();
+            if high < low + 1e-9 {
+                continue;
+            }
+            for surface in reach.shades(&|direction| direction) {
+                for triangle in &surface.triangles {
+                    let corners = triangle.map(|i| Vec3::from(surface.positions[i as usize]));
+                    let [a, b, c] = corners;
+                    for place in [a, b, c, a + b, a + b + c, a * 3.0 + b + c] {
+                        // A little inward: on the boundary itself rounding decides.
+                        let direction =
+                            (place.normalized() + law.cone.rest().normalized() * 1e-9).normalized();
+                        let ([from, to], _) = law.cone.twist_bounds(direction).expect("bounds");
+                        let share = (to - from - low) / (high - low);
+                        let colour = Reach::colour(share.clamp(0.0, 1.0));
+                        for (shown, told) in surface.colour.into_iter().zip(colour) {
+                            let most = f64::from(palette::LIMIT_LOW[0].abs_diff(palette::LIMIT[0]));
+                            let off = f64::from(shown.abs_diff(told)) / most;
+                            assert!(
+                                off < 0.5 / 16.0 + 0.03,
+                                "{}: {off} of the scale",
+                                component.name
+                            );
+                        }
+                        seen += 1;
+                    }
+                }
+            }
+        }
+        assert!(seen > 10_000, "{seen}");
     }
 }

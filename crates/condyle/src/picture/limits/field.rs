@@ -1,29 +1,50 @@
 //! What a learned field reaches: the directions in which the bone may point with some twist, as a part of a sphere about its joint.
-//! Its shade tells how far the bone may twist there, as that of cones does, and so do lines with the twist in degrees: colour
-//! alone tells not everyone.
 
 use super::super::figure::Figure;
-use super::super::marks::{label, line};
 use super::cone::{Said, frame};
-use super::{OPACITY, value};
+use super::reach::Reach;
+use super::twist::Twist;
+use super::{Judged, value};
 use condyle_math::{Mat3, Quat, Vec3};
-use condyle_mesh::Patch;
+use condyle_mesh::{Mesh, Patch};
 use condyle_model::component::FieldLimit;
 use condyle_model::evaluate::Bound;
-use condyle_model::limit::Limit;
+use condyle_model::limit::MOST_LIMITED;
 use condyle_model::limit::field::fibre;
 use condyle_model::model::ComponentId;
 use condyle_model::{Law, SegmentId, Signal};
-use condyle_render::{Line, Scene, Surface, palette, shape};
+use condyle_render::{Scene, Surface, palette, shape};
 use std::cell::RefCell;
+use std::collections::HashMap;
 use std::rc::Rc;
 
 /// Corners are 2 degrees apart.
 const LEVEL: u32 = 5;
-const SHADES: usize = 16;
-/// Lines of equal twist are these degrees apart: the smallest with which there are at most [`MOST_LINES`].
-const STEPS: [f64; 4] = [15.0, 30.0, 60.0, 90.0];
-const MOST_LINES: usize = 7;
+
+impl Reaches {
+    /// The boundary of a limit of rotations, made when it is first asked for.
+    pub(in super::super) fn boundary_of(
+        &self,
+        judged: &Judged,
+        make: impl FnOnce(&dyn Fn(Quat) -> f64) -> Mesh,
+    ) -> Rc<Mesh> {
+        let component = judged.bound.component;
+        let same = |(of, others, _): &&Boundary| {
+            let near = |(a, b): (&f64, &f64)| (a - b).abs() < SAME;
+            *of == component && others.iter().zip(judged.others()).all(near)
+        };
+        if let Some((.., known)) = self.boundaries.borrow().iter().find(same) {
+            return known.clone();
+        }
+        let made = Rc::new(make(&|q| judged.distance(q)));
+        let mut kept = self.boundaries.borrow_mut();
+        if kept.len() >= MOST_KEPT {
+            kept.remove(0);
+        }
+        kept.push((component, judged.others().to_vec(), made.clone()));
+        made
+    }
+}
 
 /// Draws the reach of a field.
 pub(super) fn draw(figure: &Figure, bound: &Bound, law: &FieldLimit, scene: &mut Scene) {
@@ -44,24 +65,18 @@ pub(super) fn draw(figure: &Figure, bound: &Bound, law: &FieldLimit, scene: &mut
     let reach = figure.reaches.of(bound.component, law, &numbers, bone);
     let radius = (0.45 * length).clamp(1.5 * figure.unit, 4.0 * figure.unit);
     let place = |direction: Vec3| centre + frame * direction * radius;
-    scene.surfaces.extend(reach.shades(&place));
-    for edge in reach.edges() {
-        scene.lines.push(line(edge.iter().map(|v| place(*v)).collect(), 2.0, palette::LIMIT));
-    }
-    for (degrees, path) in reach.lines() {
-        let points: Vec<Vec3> = path.iter().map(|v| place(*v * 1.002)).collect();
-        label(points[points.len() / 2], &format!("{degrees:.0}°"), palette::TEXT, scene);
-        let thin = line(points, 1.0, palette::TEXT);
-        scene.lines.push(Line { opacity: 0.55, through: 0.15, ..thin });
-    }
+    reach.draw(&place, scene);
     let tip = place(now * bone);
     scene.lines.push(value(centre, tip));
     let mut mark = Surface::empty(palette::VALUE);
     shape::add_ball(&mut mark, tip, 0.08 * figure.unit, (14, 10));
     scene.surfaces.push(mark);
+    let turn = Twist::of(bone, now);
+    let spans = turn.spans(&distance(law, &numbers));
+    turn.draw(&|v| frame * v, tip, 0.3 * radius, &spans, scene);
 }
 
-fn rotation(numbers: &[f64]) -> Option<Mat3> {
+pub(super) fn rotation(numbers: &[f64]) -> Option<Mat3> {
     let &[x, y, z, w, ..] = numbers else { return None };
     let q = Quat { x, y, z, w };
     let length = q.dot(q);
@@ -70,7 +85,7 @@ fn rotation(numbers: &[f64]) -> Option<Mat3> {
 
 /// The segment that is turned and the frame in the world in which it is: said by the segments that are measured, or found as that
 /// of a cone.
-fn turned(figure: &Figure, bound: &Bound, now: Mat3) -> Option<(SegmentId, Mat3)> {
+pub(super) fn turned(figure: &Figure, bound: &Bound, now: Mat3) -> Option<(SegmentId, Mat3)> {
     let components = figure.model.components();
     let component = &components[bound.component.index()];
     if let Some(Signal::Output(id, _)) = component.inputs.first() {
@@ -89,10 +104,16 @@ fn turned(figure: &Figure, bound: &Bound, now: Mat3) -> Option<(SegmentId, Mat3)
     frame(figure, bound, &said, now)
 }
 
-/// What learned limits reach, for who draws them again and again: to work it out takes a second, and it changes only with what
+/// What learned limits reach, for who draws them again and again: to work it out takes a moment, and it changes only with what
 /// else the limit depends on.
 #[derive(Debug, Default)]
-pub struct Reaches(RefCell<Vec<Kept>>);
+pub struct Reaches {
+    kept: RefCell<Vec<Kept>>,
+    boundaries: RefCell<Vec<Boundary>>,
+}
+
+/// A boundary in the space of quaternions: of a component, with the numbers beside the rotation.
+type Boundary = (ComponentId, Vec<f64>, Rc<Mesh>);
 
 #[derive(Debug)]
 struct Kept {
@@ -116,11 +137,11 @@ impl Reaches {
                 && (kept.bone - bone).norm() < SAME
                 && kept.others.iter().zip(others).all(near)
         };
-        if let Some(known) = self.0.borrow().iter().find(same) {
+        if let Some(known) = self.kept.borrow().iter().find(same) {
             return known.reach.clone();
         }
-        let reach = Rc::new(Reach::of(law, all, bone));
-        let mut kept = self.0.borrow_mut();
+        let reach = Rc::new(Reach::of_field(law, all, bone));
+        let mut kept = self.kept.borrow_mut();
         if kept.len() >= MOST_KEPT {
             kept.remove(0);
         }
@@ -129,94 +150,36 @@ impl Reaches {
     }
 }
 
-/// The directions that are reached, and how far the bone may twist there.
-#[derive(Debug)]
-struct Reach {
-    patch: Patch,
-    /// How much of the turn about the bone is allowed at each corner, in radians.
-    widths: Vec<f64>,
-}
-
 impl Reach {
-    /// By the row that the limit gives: what is drawn is what is enforced.
-    fn of(law: &FieldLimit, numbers: &[f64], bone: Vec3) -> Self {
-        let distance = |q: Quat| {
-            let mut asked = numbers.to_vec();
-            asked.iter_mut().zip(q.to_array()).for_each(|(number, c)| *number = c);
-            law.rows_at(&asked)[0].0
+    /// By the distance that the limit enforces: what is drawn is what is enforced.
+    fn of_field(law: &FieldLimit, numbers: &[f64], bone: Vec3) -> Self {
+        let distance = distance(law, numbers);
+        let known = RefCell::new(HashMap::new());
+        let deepest = |v: Vec3| {
+            let found = fibre(&distance, bone, v);
+            known.borrow_mut().insert(v.to_array().map(f64::to_bits), found.width);
+            found.deepest
         };
-        let patch = Patch::of(&|v| fibre(&distance, bone, v).deepest, LEVEL);
-        let widths = patch.corners.iter().map(|v| fibre(&distance, bone, *v).width).collect();
+        let patch = Patch::of_distance(&deepest, LEVEL);
+        let known = known.borrow();
+        let width = |v: &Vec3| match known.get(&v.to_array().map(f64::to_bits)) {
+            Some(width) => *width,
+            None => fibre(&distance, bone, *v).width,
+        };
+        let widths = patch.corners.iter().map(width).collect();
         Self { patch, widths }
     }
+}
 
-    fn ends(&self) -> [f64; 2] {
-        let known = || self.widths.iter().copied();
-        [known().fold(f64::INFINITY, f64::min), known().fold(0.0, f64::max)]
-    }
-
-    /// The part of the sphere, a surface for each shade.
-    fn shades(&self, place: &dyn Fn(Vec3) -> Vec3) -> Vec<Surface> {
-        let [low, high] = self.ends();
-        let mut shades: Vec<Surface> = (0..SHADES)
-            .map(|shade| {
-                let share = shade as f64 / (SHADES - 1) as f64;
-                let mixed = [0, 1, 2].map(|i| {
-                    let [from, to] = [palette::LIMIT_LOW[i], palette::LIMIT[i]].map(f64::from);
-                    (from + (to - from) * share).round() as u8
-                });
-                Surface::empty(mixed).with_opacity(1.6 * OPACITY)
-            })
-            .collect();
-        let centre = place(Vec3::ZERO);
-        for triangle in &self.patch.triangles {
-            let at = triangle.map(|i| i as usize);
-            let width = at.iter().map(|i| self.widths[*i]).sum::<f64>() / 3.0;
-            let share = if high > low + 1e-9 { (width - low) / (high - low) } else { 1.0 };
-            let shade = (share * (SHADES - 1) as f64).round().clamp(0.0, (SHADES - 1) as f64);
-            let surface = &mut shades[shade as usize];
-            let corners = at.map(|i| {
-                let place = place(self.patch.corners[i]);
-                surface.corner(place, place - centre)
-            });
-            surface.triangles.push(corners);
-        }
-        shades.retain(|surface| !surface.triangles.is_empty());
-        shades
-    }
-
-    /// The boundary as closed lines.
-    fn edges(&self) -> Vec<Vec<Vec3>> {
-        let loops = self.patch.loops().into_iter();
-        loops
-            .map(|line| {
-                let around = line.iter().chain(line.first());
-                around.map(|i| self.patch.corners[*i as usize]).collect()
-            })
-            .collect()
-    }
-
-    /// Lines of equal twist, with it in degrees.
-    fn lines(&self) -> Vec<(f64, Vec<Vec3>)> {
-        let [low, high] = self.ends().map(f64::to_degrees);
-        let levels = |step: f64| {
-            (1..).map(move |n| step * f64::from(n)).skip_while(move |d| *d <= low).take_while(
-                // A line on the greatest twist itself is noise.
-                move |d| *d < high - 1.0,
-            )
-        };
-        let step = STEPS.into_iter().find(|step| levels(*step).count() <= MOST_LINES);
-        let mut lines = vec![];
-        for degrees in levels(step.unwrap_or(120.0)) {
-            for line in self.patch.contour(&self.widths, degrees.to_radians()) {
-                // Specks are left out.
-                let length: f64 = line.windows(2).map(|ends| (ends[1] - ends[0]).norm()).sum();
-                if length > 0.2 {
-                    lines.push((degrees, line));
-                }
-            }
-        }
-        lines
+/// The distance of a rotation, with what else the limit reads.
+fn distance<'a>(law: &'a FieldLimit, numbers: &'a [f64]) -> impl Fn(Quat) -> f64 + 'a {
+    let mut asked = [0.0; MOST_LIMITED];
+    asked.iter_mut().zip(numbers).for_each(|(to, from)| *to = *from);
+    let count = numbers.len().min(MOST_LIMITED);
+    move |q: Quat| {
+        let mut asked = asked;
+        asked[..4].copy_from_slice(&q.to_array());
+        law.distance(&asked[..count])
     }
 }
 
@@ -226,6 +189,7 @@ mod tests {
     use super::*;
     use crate::limits::{About, Cloud, Settings, learn};
     use condyle_model::ModelBuilder;
+    use condyle_model::limit::Limit;
     use std::sync::Arc;
 
     /// About z, then x, then y of the arm.
@@ -259,7 +223,7 @@ mod tests {
     fn the_drawn_boundary_is_the_enforced_one() {
         let law = limit();
         let bone = -Vec3::Y;
-        let reach = Reach::of(&law, &[0.0, 0.0, 0.0, 1.0], bone);
+        let reach = Reach::of_field(&law, &[0.0, 0.0, 0.0, 1.0], bone);
         let allowed = |direction: Vec3| {
             let across = bone.cross(direction);
             let angle = across.norm().atan2(bone.dot(direction));
@@ -278,8 +242,8 @@ mod tests {
                 let at = (ends[0] * (1.0 - share) + ends[1] * share).normalized();
                 let out = along.cross(at).normalized() * 0.1f64.to_radians();
                 count += 1;
-                wrong += usize::from(!allowed((at - out).normalized()));
-                wrong += usize::from(allowed((at + out).normalized()));
+                let judged = [at - out, at + out].map(|to| allowed(to.normalized()));
+                wrong += usize::from(judged != [true, false]);
             }
         }
         assert!(count > 100, "{count}");
@@ -290,7 +254,7 @@ mod tests {
     #[test]
     fn lines_say_the_twist() {
         let law = limit();
-        let reach = Reach::of(&law, &[0.0, 0.0, 0.0, 1.0], -Vec3::Y);
+        let reach = Reach::of_field(&law, &[0.0, 0.0, 0.0, 1.0], -Vec3::Y);
         let lines = reach.lines();
         assert!(lines.len() > 1);
         let distance = |q: Quat| law.rows_at(&q.to_array())[0].0;
@@ -334,7 +298,10 @@ mod tests {
             let arm = q.to_mat3() * -Vec3::Y;
             assert!((tip.normalized() - arm).norm() < 1e-9);
             // All of it on one sphere about the joint.
-            let edges = scene.lines.iter().filter(|line| line.colour == palette::LIMIT);
+            let edges = scene
+                .lines
+                .iter()
+                .filter(|line| line.colour == palette::LIMIT && line.width == 2.0);
             let points = edges.flat_map(|line| &line.points);
             assert!(points.clone().count() > 50);
             for point in points {

@@ -4,9 +4,15 @@
 mod arc;
 mod cone;
 mod ellipse;
+#[cfg(test)]
+mod enforced;
 mod field;
+mod judged;
+mod reach;
+mod twist;
 
 pub use field::Reaches;
+pub(super) use judged::Judged;
 
 use super::figure::Figure;
 use super::marks::line;
