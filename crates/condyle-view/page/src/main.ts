@@ -34,7 +34,7 @@ async function start(): Promise<void> {
     }
   });
   byId("waiting").hidden = true;
-  if (given.mode !== "exported") dropping(app);
+  dropping(app);
   if (given.mode === "served") live(app);
   if (given.mode === "served" && given.editable) authoring(app);
   window.condyle = app;
