@@ -31,6 +31,9 @@ struct Page {
     /// What stands above the page; without it, the name of the model's file.
     #[arg(long)]
     title: Option<String>,
+    /// Files of all formats can be dropped on the page, also models of OpenSim and skeletons of GLB: 0.9 MB more.
+    #[arg(long)]
+    all_formats: bool,
     /// Where to write the page; `-` is standard output.
     #[arg(short, long, value_name = "X.html")]
     output: PathBuf,
@@ -56,7 +59,7 @@ impl Page {
         if let Some(title) = self.title {
             session.title = title;
         }
-        output::write(&self.output, exported(&session).as_bytes())?;
+        output::write(&self.output, exported(&session, self.all_formats).as_bytes())?;
         Ok(Outcome::Done)
     }
 }

@@ -1,6 +1,6 @@
 // Goals of a pose, as `condyle pose MODEL GOALS.toml` has them: listed with what each lacks, held while bones are dragged.
 
-import { Matrix4, Quaternion } from "three";
+import { BufferGeometry, Float32BufferAttribute, LineBasicMaterial, LineSegments, Matrix4, Quaternion } from "three";
 import type { App } from "./app";
 import { byId, download, element } from "./dom";
 import { unitOf } from "./unit";
@@ -54,6 +54,8 @@ export class GoalPanel {
   /** The pose to be near in place of the model's rest. */
   private near: number[] | null = null;
   private waiting = false;
+  /** Crosses where points should be, and lines to where they are. */
+  private readonly marks = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ color: 0xe5337a, depthTest: false, transparent: true }));
   private readonly title = element("summary");
   private readonly rows = element("ol", { class: "goals" });
   private readonly said: HTMLElement[] = [];
@@ -83,8 +85,14 @@ export class GoalPanel {
       this.names,
     );
     app.history.parts.push({ get: () => this.list, set: (list: Goals) => list !== this.list && this.put(list, "look") });
-    app.onchange.push(() => this.lag());
+    app.onchange.push(() => {
+      if (this.list.goals.length > 0) this.mark();
+      this.lag();
+    });
     byId("coordinates").before(this.root);
+    this.marks.frustumCulled = false;
+    this.marks.renderOrder = 3;
+    app.view.content.add(this.marks);
     this.shown();
   }
 
@@ -188,11 +196,30 @@ export class GoalPanel {
     const missed = this.lacks.filter((lack) => !near(lack)).length;
     const count = this.list.goals.length;
     this.title.textContent = count === 0 ? "goals (0)" : `goals (${count}, ${missed === 0 ? "all reached" : `${missed} not reached`})`;
+    this.mark();
     this.said.forEach((output, index) => {
       const lack = this.lacks[index];
       output.textContent = lack ? `${near(lack) ? "✓" : "✗"} ${lack.angle ? `${((180 / Math.PI) * lack.off).toFixed(2)}°` : `${(1000 * lack.off).toFixed(2)} mm`}` : "";
       output.className = lack && !near(lack) ? "missed" : "";
     });
+  }
+
+  /** Draws where points should be. */
+  private mark(): void {
+    const { app } = this;
+    const lines: number[] = [];
+    const size = 0.02 * Math.max(0.2, app.view.unit / 0.05);
+    for (const goal of app.model ? this.list.goals : []) {
+      const [from, to] = goal.kind === "point" ? [goal["point"], goal["at"]] : goal.kind === "distance" ? (goal["points"] as unknown[]) : [];
+      if (from === undefined || to === undefined || to === "rest") continue;
+      const [is, wanted] = [this.where(from as Place), this.where(to as Place)];
+      lines.push(...is, ...wanted);
+      if (goal.kind === "distance") continue;
+      for (const axis of [0, 1, 2]) for (const side of [-size, size]) lines.push(...wanted.map((x, i) => (i === axis ? x + side : x)));
+    }
+    this.marks.geometry.dispose();
+    this.marks.geometry = new BufferGeometry().setAttribute("position", new Float32BufferAttribute(lines, 3));
+    app.view.draw();
   }
 
   private shown(): void {
@@ -261,7 +288,7 @@ export class GoalPanel {
       const place = value as Place;
       const named = typeof place === "string" ? place : Array.isArray(place) ? "world" : place.segment;
       const chosen = (next: string) => {
-        if (next === "world") set(Array.isArray(place) ? place : this.where(place));
+        if (next === "world") set(this.where(place));
         else set(segments.some((segment) => segment.name === next) && !this.app.model!.about.markers.some((m) => m.name === next) ? { segment: next, at: [0, 0, 0] } : next);
       };
       const box = text(named, chosen, true);
@@ -274,7 +301,8 @@ export class GoalPanel {
   }
 
   /** Where a point of the model is now. */
-  private where(place: Exclude<Place, Triple>): Triple {
+  private where(place: Place): Triple {
+    if (Array.isArray(place)) return place;
     const model = this.app.model!;
     const marker = model.about.markers.find((m) => m.name === place);
     const [actor] = model.actors;

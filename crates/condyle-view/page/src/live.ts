@@ -35,9 +35,9 @@ async function again(app: App): Promise<void> {
   const old = app.motions;
   const taken = app.core.take(`${name}.${format}`, new TextEncoder().encode(text), null);
   if (!taken.model) return;
+  const { motions: all, said } = before ? carried(old, before, taken.model.about) : { motions: [], said: [] };
   // Those that were dropped on the page are known here alone.
-  const dropped = old.filter((motion) => !session.motions.some((other) => other.name === motion.name));
-  const { motions, said } = before ? carried(dropped, before, taken.model.about) : { motions: [], said: [] };
+  const motions = all.filter((motion) => !session.motions.some((other) => other.name === motion.name));
   app.open(taken.model, session.title, [...session.motions, ...motions], true);
   const index = (wanted: string | undefined) => app.motions.findIndex((motion) => motion.name === wanted);
   if (seen[0] !== undefined && index(seen[0]) >= 0) app.chosen = [index(seen[0]), seen[1] === undefined ? second : index(seen[1])];

@@ -38,7 +38,7 @@ async function start(): Promise<void> {
   });
   byId("waiting").hidden = true;
   await app.attempt(async () => app.dress(await looks(given.model?.geometry)));
-  if (given.mode !== "exported") dropping(app);
+  dropping(app);
   if (given.mode === "served") live(app);
   if (given.mode === "served" && given.editable) authoring(app);
   window.condyle = app;

@@ -64,7 +64,7 @@ async function fetched(): Promise<Exports> {
 }
 
 async function asset(): Promise<Uint8Array> {
-  const own = "this page reads .toml, .json, .bvh, .trc, .c3d, .mot, .sto and .csv; `condyle view` reads all that condyle does";
+  const own = "this page reads .toml, .json, .bvh, .trc, .c3d, .mot, .sto and .csv; `condyle view`, or a page of `condyle export page --all-formats`, reads all formats";
   try {
     const response = await fetch("assets/readers.wasm.lzma");
     if (response.ok) return new Uint8Array(await response.arrayBuffer());

@@ -5,6 +5,7 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 
 const [condyle, browserPath] = process.argv.slice(2);
@@ -361,6 +362,19 @@ await test("a recording that is dropped is tracked while the page lives", async 
   await picture(page, "tracking");
   await page.waitForFunction(() => window.condyle.motions[0]?.times.length === 400, null, { timeout: 240_000 });
   check((await page.evaluate(() => window.condyle.markers.error)) < 1e-3, "its markers are met");
+  await page.close();
+});
+
+await test("a file of its own reads other formats, too, and tracks", async () => {
+  const file = join(folder, "legs.html");
+  execFileSync(condyle, ["export", "page", "legs", "--all-formats", "-o", file]);
+  const page = await opened(null, pathToFileURL(file).href);
+  await given(page, recording(30));
+  await page.waitForFunction(() => window.condyle.motions[0]?.times.length === 30, null, { timeout: 120_000 });
+  const osim = join(folder, "knee.osim");
+  execFileSync(condyle, ["convert", "knee", osim], { stdio: ["ignore", "ignore", "ignore"] });
+  await given(page, osim);
+  await page.waitForFunction(() => window.condyle.title === "knee", null, { timeout: 120_000 });
   await page.close();
 });
 
