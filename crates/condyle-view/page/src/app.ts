@@ -79,17 +79,22 @@ export class App {
   /** Shows a model; motions that came with it, and the old pose where `kept` and names are the same. */
   open(model: Model, title: string, motions: Motion[], kept = false): void {
     const before = kept && this.model ? named(this.model) : null;
+    // Numbers of segments and sets may be others in the new model; names say what was looked at.
+    const old = kept ? this.model?.about : undefined;
+    const chosen = { segment: this.selected === null ? undefined : old?.segments[this.selected]?.name, set: this.set === null ? undefined : old?.sets[this.set] };
     for (const figure of this.figures) {
       this.view.content.remove(figure.mesh);
       figure.dispose();
     }
     this.shape?.geometry.dispose();
+    // Nothing asks the old model any more.
+    this.inspector.network.clear();
     this.model?.close();
     this.model = model;
     this.title = title;
     this.motions = motions;
     this.chosen = [motions.length > 0 ? 0 : -1, -1];
-    if (!kept) [this.selected, this.set] = [null, null];
+    [this.selected, this.set] = [index(model.about.segments, chosen.segment), index(model.about.sets, chosen.set)];
     this.curves.clear();
     byId("title").textContent = title;
     document.title = `${title} – condyle`;
@@ -113,7 +118,7 @@ export class App {
     byId("waiting").hidden = true;
     this.motionsChanged();
     this.posed();
-    this.select(this.selected);
+    this.accented();
   }
 
   /** Reads files that a person gives. */
@@ -311,8 +316,6 @@ export class App {
     this.selected = segment;
     const { model } = this;
     if (!model) return;
-    const accent = new Color(model.about.colours["accent"] ?? "#e06a2b");
-    this.shape?.accent(new Set(segment === null ? [] : [segment]), accent);
     if (segment !== null) {
       // A bone without coordinates of its own goes with its parent's.
       let at: number | null = segment;
@@ -324,6 +327,14 @@ export class App {
         this.sliders.open(set, model.about);
       }
     }
+    this.accented();
+  }
+
+  /** Shows what is selected. */
+  private accented(): void {
+    const { model, selected } = this;
+    const accent = new Color(model?.about.colours["accent"] ?? "#e06a2b");
+    this.shape?.accent(new Set(selected === null ? [] : [selected]), accent);
     this.inspector.build();
     this.signed();
   }
@@ -354,6 +365,12 @@ export class App {
   hit(ray: import("three").Ray): ReturnType<Shape["hit"]> {
     return this.shape?.hit(ray, this.model!.actors[0]!, new Vector3()) ?? null;
   }
+}
+
+/** Where something of a name is in a list. */
+function index(list: readonly (string | { name: string })[], name: string | undefined): number | null {
+  const at = name === undefined ? -1 : list.findIndex((one) => (typeof one === "string" ? one : one.name) === name);
+  return at < 0 ? null : at;
 }
 
 /** The asked values of a model by name. */

@@ -74,6 +74,9 @@ export function pointer(app: App, dragging: { on: boolean }): void {
   };
   canvas.addEventListener("pointerup", finish);
   canvas.addEventListener("pointercancel", finish);
+  canvas.addEventListener("pointerleave", () => {
+    if (!drag) hover.textContent = "";
+  });
   keys(app, dragging, canvas, hover);
 }
 

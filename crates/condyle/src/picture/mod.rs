@@ -29,7 +29,7 @@ mod view;
 
 pub use focus::Focus;
 pub use limits::Reaches;
-pub use sheet::{Posed, Sheet, draw};
+pub use sheet::{Posed, Sheet, draw, draw_figure};
 pub use show::Show;
 pub use signs::signs;
 pub use view::View;
