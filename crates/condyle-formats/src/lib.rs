@@ -31,6 +31,7 @@
 //! | URDF robot descriptions | [`urdf::from_bytes`] | [`urdf::write`] |
 //! | MJCF models of MuJoCo | | [`mjcf::write`] |
 //! | UsdSkel scenes (USDA) | | [`usd::write`] |
+//! | surfaces of bones: VTK polygons (`.vtp`), STL, OBJ | `surface::from_bytes` | |
 //! | XML, for readers of models | [`XmlDocument`] | |
 
 pub mod asf;
@@ -61,6 +62,8 @@ pub mod skeleton;
 #[cfg(feature = "smpl")]
 pub mod smpl;
 pub mod sto;
+#[cfg(feature = "surfaces")]
+pub mod surface;
 pub mod text;
 pub mod trc;
 #[cfg(feature = "urdf")]

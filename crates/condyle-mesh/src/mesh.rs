@@ -56,6 +56,21 @@ impl Mesh {
         mesh.faced()
     }
 
+    /// A surface of these triangles with smooth normals: at each corner the mean of its triangles' normals, weighted by their
+    /// areas. Triangles of corners that are not there are left out.
+    ///
+    /// ```
+    /// use condyle_math::Vec3;
+    /// use condyle_mesh::Mesh;
+    /// let mesh = Mesh::of(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2], [0, 1, 3]]);
+    /// assert_eq!((mesh.normals[2], mesh.triangles.len()), (Vec3::Z, 1));
+    /// ```
+    #[must_use]
+    pub fn of(positions: Vec<Vec3>, mut triangles: Vec<[u32; 3]>) -> Self {
+        triangles.retain(|triangle| triangle.iter().all(|i| (*i as usize) < positions.len()));
+        Self { positions, normals: vec![], triangles }.smooth()
+    }
+
     /// The same surface facing outward, with smooth normals: at each corner the mean of its triangles' normals,
     /// weighted by their areas.
     pub(crate) fn faced(mut self) -> Self {
@@ -64,6 +79,10 @@ impl Mesh {
                 triangle.swap(1, 2);
             }
         }
+        self.smooth()
+    }
+
+    fn smooth(mut self) -> Self {
         self.normals = vec![Vec3::ZERO; self.positions.len()];
         for triangle in &self.triangles {
             let [a, b, c] = triangle.map(|i| self.positions[i as usize]);

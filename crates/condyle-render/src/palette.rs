@@ -13,6 +13,8 @@ pub const GROUND: Colour = [0xdc, 0xdf, 0xe4];
 pub const GRID: Colour = [0xb6, 0xbc, 0xc6];
 /// Bones.
 pub const BONE: Colour = [0xe9, 0xdf, 0xc8];
+/// Skin.
+pub const SKIN: Colour = [0xd9, 0xae, 0x94];
 /// Cartilage.
 pub const CARTILAGE: Colour = [0xa9, 0xc9, 0xdc];
 /// Joints, and ends of segments.
@@ -49,12 +51,13 @@ pub const TEXT: Colour = [0x26, 0x2b, 0x33];
 pub const LEADER: Colour = [0x8c, 0x93, 0x9e];
 
 /// Every colour with its name, for a page that shows the same things.
-pub const ALL: [(&str, Colour); 22] = [
+pub const ALL: [(&str, Colour); 23] = [
     ("background", BACKGROUND),
     ("page", PAGE),
     ("ground", GROUND),
     ("grid", GRID),
     ("bone", BONE),
+    ("skin", SKIN),
     ("cartilage", CARTILAGE),
     ("joint", JOINT),
     ("accent", ACCENT),

@@ -1,5 +1,6 @@
 //! A model as surfaces that move with its pose.
 
+use crate::geometry::{Geometry, Skin};
 use condyle_math::{Affine, Vec3};
 use condyle_mesh::{Ball, Finish, Form, Mesh, Spindle};
 use condyle_model::{Mode, Model, Pose, Program, SegmentId, Shape};
@@ -25,6 +26,10 @@ pub struct Part {
 pub struct Figure {
     /// What is seen.
     pub parts: Vec<Part>,
+    /// Meshes of files, which are seen in place of the parts of their segments.
+    pub meshes: Vec<Part>,
+    /// Skins of files.
+    pub skins: Vec<Skin>,
     /// Where each segment is in the world while the model is at its defaults.
     pub neutral: Vec<Affine>,
 }
@@ -49,7 +54,30 @@ impl Figure {
         } else {
             model.shapes().iter().map(|shape| part(shape, &neutral)).collect()
         };
-        Self { parts, neutral }
+        Self { parts, meshes: vec![], skins: vec![], neutral }
+    }
+
+    /// The same with meshes and skins of files.
+    #[must_use]
+    pub fn with(mut self, geometry: Geometry) -> Self {
+        let part = |placed: crate::geometry::Placed| {
+            let mut mesh = placed.mesh;
+            place(&mut mesh, *self.neutral.get(placed.segment.index())?);
+            let segments = [placed.segment; 2];
+            Some(Part { name: placed.name, segments, finish: Finish::Bone, mesh, weights: vec![] })
+        };
+        self.meshes = geometry.meshes.into_iter().filter_map(part).collect();
+        self.skins = geometry.skins;
+        self
+    }
+
+    /// What is seen of bones: meshes, and the parts of segments that have none.
+    pub fn seen(&self) -> impl Iterator<Item = &Part> {
+        let own = |part: &&Part| {
+            let [a, b] = part.segments;
+            a != b || !self.meshes.iter().any(|mesh| mesh.segments[0] == a)
+        };
+        self.parts.iter().filter(own).chain(&self.meshes)
     }
 
     /// The surface of one part in a pose of its model, in the world.

@@ -275,6 +275,7 @@ pub mod constraining;
 #[cfg(feature = "formats")]
 pub mod encode;
 mod figure;
+pub mod geometry;
 #[cfg(feature = "document")]
 pub mod learning;
 pub mod legal;

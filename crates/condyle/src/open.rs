@@ -35,7 +35,8 @@ use condyle_model::Model;
 #[cfg(feature = "poses")]
 use condyle_motion::Keys;
 use condyle_motion::{AngleUnit, Animation, Motion, Recording, Table, Zeros};
-use source::{bytes, nameless_format};
+pub(crate) use source::bytes;
+use source::nameless_format;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -321,6 +322,16 @@ pub fn figure(path: &Path) -> Result<Read<Animation>, OpenError> {
         return Ok(read);
     }
     animation(path)
+}
+
+/// The surfaces of a file of glTF, carried by the segments of the model that [`animation`] opens from it.
+#[cfg(feature = "glb")]
+pub(crate) fn surfaces(path: &Path) -> Result<Read<Vec<glb::Cover>>, OpenError> {
+    let bytes = bytes(path)?;
+    let options =
+        glb::Options { animation: source::wanted_animation(), assumed: source::assumed() };
+    let read = glb::covers(&bytes, &options, &mut |name| buffer(path, name));
+    read.map_err(|error| failed(path, Cause::Content { error, text: None }))
 }
 
 /// Whether a path names a file of glTF.

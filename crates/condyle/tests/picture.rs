@@ -108,7 +108,7 @@ fn every_kind_of_thing_adds_something() {
     let model = human();
     let with = |show: Vec<Show>| draw(&model, &Sheet { show, ..sheet(&model) }).unwrap();
     let bones = with(vec![Show::Bones]);
-    assert_eq!(with(vec![Show::Skin]), bones, "there is no skin yet");
+    assert_eq!(with(vec![Show::Skin]), bones, "the knee has no skin");
     for (name, kind) in Show::ALL.into_iter().skip(2) {
         let differs = with(vec![Show::Bones, kind]);
         let off = bones.pixels().iter().zip(differs.pixels()).filter(|(a, b)| a != b).count();

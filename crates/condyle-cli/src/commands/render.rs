@@ -6,7 +6,7 @@ use crate::output;
 use crate::screen::say;
 use clap::Args;
 use condyle::picture::{self, Focus, Posed, Sheet, Show, View};
-use condyle::{Animation, Model, Motion, legal, open};
+use condyle::{Animation, Figure, Model, Motion, geometry, legal, open};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -41,9 +41,13 @@ pub(crate) struct Render {
     /// Width and height in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720")]
     size: String,
-    /// What is shown: bones, skin, frames, axes, centres, limits, contacts, markers, names.
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "bones")]
+    /// What is shown: bones, skin, frames, axes, centres, limits, contacts, markers, names. Without it, the skin of a file that
+    /// has one, else bones.
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
     show: Vec<String>,
+    /// A folder in which the meshes are that an `.osim` names, beside its own folder and `Geometry` there.
+    #[arg(long, value_name = "DIR")]
+    geometry: Vec<PathBuf>,
     /// Draw the nearest legal pose.
     #[arg(long, value_enum, default_value_t = Limits::On)]
     limits: Limits,
@@ -65,14 +69,21 @@ impl Render {
         if !self.view.is_empty() {
             sheet.views = self.view.iter().map(|v| View::named(v)).collect::<Result<_, _>>()?;
         }
-        sheet.show = self.show.iter().map(|s| Show::named(s.trim())).collect::<Result<_, _>>()?;
+        let show = self.show.iter().map(|s| Show::named(s.trim())).collect::<Result<_, _>>()?;
         if let Some(zoom) = self.zoom.filter(|zoom| !(1e-3..=1e4).contains(zoom)) {
             return Err(Failure::new(format!("--zoom {zoom}: give a number from 0.001 to 10000")));
         }
         sheet.focus = Focus { names: self.at.clone(), zoom: self.zoom, highlight: self.highlight };
         let Animation { model, motion } = warned(&self.model, open::animation(&self.model)?);
         sheet.poses = self.poses(&model, motion)?;
-        let picture = picture::draw(&model, &sheet)?;
+        geometry::folder_is(self.geometry.clone());
+        let geometry = warned(&self.model, geometry::open(&self.model, &model)?);
+        sheet.show = match (self.show.is_empty(), geometry.skins.is_empty()) {
+            (false, _) => show,
+            (true, false) => vec![Show::Skin],
+            (true, true) => vec![Show::Bones],
+        };
+        let picture = picture::draw_figure(&model, &Figure::new(&model).with(geometry), &sheet)?;
         output::write(&self.output, &picture.png())?;
         Ok(Outcome::Done)
     }

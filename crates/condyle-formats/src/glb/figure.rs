@@ -122,6 +122,25 @@ impl Figure {
         figure
     }
 
+    /// The bone of each node; by what lengths in each bone's own node are multiplied in it; the metres in a unit of the scene.
+    pub(super) fn scales(&self, nodes: usize) -> (Vec<Option<usize>>, Vec<f64>, f64) {
+        let mut bones = vec![None; nodes];
+        let mut scales = Vec::with_capacity(self.nodes.len());
+        let mut unit = 1.0;
+        for (bone, &node) in self.nodes.iter().enumerate() {
+            if let Some(at) = bones.get_mut(node) {
+                *at = Some(bone);
+            }
+            if self.skeleton.bones[bone].parent.is_none() {
+                unit = self.factors[bone];
+            }
+            let [x, y, z] = self.still[bone].scale;
+            let own = if self.moved[bone].sizes { 1.0 } else { (x + y + z) / 3.0 };
+            scales.push(self.factors[bone] * own);
+        }
+        (bones, scales, unit)
+    }
+
     /// Lengths become metres.
     pub(crate) fn settle_unit(&mut self, assumed: &Assumed, warnings: &mut Warnings) {
         let rest = self.skeleton.rest();

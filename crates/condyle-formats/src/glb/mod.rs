@@ -13,6 +13,7 @@ mod accessor;
 mod bind;
 mod clip;
 mod container;
+mod cover;
 mod figure;
 mod json;
 mod pack;
@@ -36,6 +37,7 @@ pub(crate) use figure::{Figure, Still};
 pub(crate) use tree::{Tree, TreeNode};
 
 pub use condyle_mesh::{Finish, Mesh};
+pub use cover::{Carrier, Cover, covers};
 pub use read::{Options, from_bytes, node_motion, read};
 pub use reanimate::{NodeMotion, NodeTrack, Old, reanimate};
 pub use scene::{Driven, LocalPose, MarkerTrack, Scene, SceneNode, Surface, Track, UpAxis};

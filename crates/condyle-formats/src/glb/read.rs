@@ -110,14 +110,14 @@ pub fn node_motion(
 }
 
 /// What a file consists of.
-struct Parts {
-    tree: Tree,
+pub(super) struct Parts {
+    pub(super) tree: Tree,
     bound: Still,
     clip: Clip,
-    figure: Figure,
+    pub(super) figure: Figure,
 }
 
-fn parts(
+pub(super) fn parts(
     bytes: &[u8],
     options: &Options,
     beside: &mut Beside<'_>,

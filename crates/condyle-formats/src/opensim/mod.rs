@@ -1,6 +1,7 @@
 //! OpenSim's XML files.
 
 pub mod coupled;
+pub mod geometry;
 pub mod model;
 pub mod scale;
 pub mod scale_setup;

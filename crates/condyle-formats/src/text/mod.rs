@@ -1,6 +1,6 @@
 //! From bytes to lines, cells and numbers, for every text format.
 
-#[cfg(any(feature = "document", feature = "glb"))]
+#[cfg(any(feature = "document", feature = "glb", feature = "surfaces"))]
 pub(crate) mod base64;
 mod decode;
 mod line;

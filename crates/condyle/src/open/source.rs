@@ -84,7 +84,7 @@ pub(super) fn nameless_format(path: &Path) -> Option<&'static Format> {
 }
 
 /// All bytes of a file, of standard input, or of what comes through a pipe.
-pub(super) fn bytes(path: &Path) -> Result<Vec<u8>, OpenError> {
+pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, OpenError> {
     if is_standard_input(path) {
         static TAKEN: AtomicBool = AtomicBool::new(false);
         if TAKEN.swap(true, Ordering::Relaxed) {

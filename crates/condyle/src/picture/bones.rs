@@ -1,4 +1,4 @@
-//! The surfaces of bones.
+//! The surfaces of bones, and skins over them.
 
 use super::figure::Figure;
 use condyle_mesh::Finish;
@@ -26,5 +26,20 @@ pub(super) fn surfaces(figure: &Figure) -> Vec<(SegmentId, Surface)> {
         };
         (carrier, surface)
     };
-    figure.surfaces.parts.iter().map(part).collect()
+    figure.surfaces.seen().map(part).collect()
+}
+
+/// All skins; bones are seen through them where they are shown as well.
+pub(super) fn skins(figure: &Figure, through: bool) -> Vec<Surface> {
+    let skin = |skin: &crate::geometry::Skin| {
+        let mesh = skin.posed(figure.pose);
+        Surface {
+            positions: mesh.positions.into_iter().map(|p| p.to_array()).collect(),
+            normals: mesh.normals.into_iter().map(|n| n.to_array()).collect(),
+            triangles: mesh.triangles,
+            colour: figure.colour(None, skin.colour.unwrap_or(palette::SKIN)),
+            opacity: if through { 0.4 } else { 1.0 },
+        }
+    };
+    figure.surfaces.skins.iter().map(skin).collect()
 }

@@ -31,7 +31,7 @@ mod view;
 pub use focus::Focus;
 pub use limits::Reaches;
 pub use quaternions::Rotations;
-pub use sheet::{Posed, Sheet, draw};
+pub use sheet::{Posed, Sheet, draw, draw_figure};
 pub use show::Show;
 pub use signs::{rotation, rotations, signs};
 pub use view::View;

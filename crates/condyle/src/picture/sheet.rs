@@ -65,10 +65,22 @@ const MOST_CELLS: usize = 1 << 10;
 /// `picture/unknown` for names that the model does not have; `picture/size` for pictures of no pixels or of
 /// too many, or for cells smaller than 16 pixels; `picture/poses` for poses of another length.
 pub fn draw(model: &Model, sheet: &Sheet) -> Result<Canvas, Error> {
+    draw_figure(model, &crate::Figure::new(model), sheet)
+}
+
+/// Draws a sheet as [`draw`] does, of surfaces that are given: of files, for example.
+///
+/// # Errors
+/// As [`draw`].
+pub fn draw_figure(
+    model: &Model,
+    surfaces: &crate::Figure,
+    sheet: &Sheet,
+) -> Result<Canvas, Error> {
     let chosen = sheet.focus.resolve(model)?;
     let layout = Layout::of(sheet)?;
     let program = Program::compile(model);
-    let (surfaces, reaches) = (crate::Figure::new(model), limits::Reaches::default());
+    let reaches = limits::Reaches::default();
     let (mut pose, mut jacobian) = (Pose::new(&program), Jacobian::new(&program));
     let mut page = Canvas::new(sheet.size[0], sheet.size[1], palette::PAGE);
     let mut evaluate = |stored: &[f64], draw: &mut dyn FnMut(&Figure)| {
@@ -80,7 +92,7 @@ pub fn draw(model: &Model, sheet: &Sheet) -> Result<Canvas, Error> {
             stored,
             pose: &pose,
             jacobian: &jacobian,
-            surfaces: &surfaces,
+            surfaces,
             chosen: chosen.as_ref(),
             highlight: sheet.focus.highlight,
             reaches: &reaches,
@@ -134,8 +146,13 @@ fn rendered(picture: &Picture) -> Canvas {
 pub(super) fn scene(figure: &Figure, show: &[Show]) -> Scene {
     let mut scene = Scene::default();
     let shows = |kind: Show| show.contains(&kind);
-    if shows(Show::Bones) || shows(Show::Skin) {
+    let skinned = shows(Show::Skin) && !figure.surfaces.skins.is_empty();
+    let boned = shows(Show::Bones) || shows(Show::Skin) && !skinned;
+    if boned {
         scene.surfaces.extend(bones::surfaces(figure).into_iter().map(|(_, surface)| surface));
+    }
+    if skinned {
+        scene.surfaces.extend(bones::skins(figure, boned));
     }
     if shows(Show::Frames) {
         marks::frames(figure, &mut scene);
@@ -188,7 +205,13 @@ impl Placed {
         }
         let chosen = figure.chosen;
         let around = Bounds { low: [-0.5; 3], high: [0.5; 3] };
-        let whole = of(None).unwrap_or(around);
+        let skins = if show.contains(&Show::Skin) { bones::skins(figure, false) } else { vec![] };
+        let skins = Bounds::of(skins.into_iter().flat_map(|skin| skin.positions));
+        let whole =
+            match (of(None).filter(|_| show.contains(&Show::Bones) || skins.is_none()), skins) {
+                (Some(bones), Some(skins)) => bones.with(skins),
+                (bones, skins) => bones.or(skins).unwrap_or(around),
+            };
         let looked = match chosen {
             Some(_) => of(chosen).unwrap_or(whole),
             None => signs.bounds().map_or(whole, |signs| whole.with(signs)),

@@ -16,7 +16,7 @@ const SETS: [&str; 4] = ["BodySet", "JointSet", "ConstraintSet", "MarkerSet"];
 /// # Errors
 /// `osim/include` where such a file is not XML or holds no such set, and where it cannot be had, unless
 /// it is that of a marker set: a model without its markers still moves.
-pub(super) fn put_in(
+pub(in crate::opensim) fn put_in(
     document: Read<XmlDocument>,
     include: &mut Include<'_>,
 ) -> Result<Read<XmlDocument>, Error> {
