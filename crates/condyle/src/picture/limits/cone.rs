@@ -5,12 +5,12 @@ use super::super::figure::Figure;
 use super::ellipse::bounded;
 use super::reach::Reach;
 use super::twist::Twist;
-use super::{OPACITY, fan, value};
+use super::{OPACITY, fan, field, value};
 use condyle_math::{Mat3, Quat, Vec3};
 use condyle_mesh::Patch;
 use condyle_model::component::{JointCone, Swinging};
 use condyle_model::evaluate::Bound;
-use condyle_model::{Cone, Mode, Pose, SegmentId};
+use condyle_model::{Cone, Law, Mode, Pose, SegmentId};
 use condyle_render::{Scene, Surface, palette, shape};
 use std::f64::consts::{PI, TAU};
 
@@ -38,7 +38,15 @@ pub(super) fn draw(figure: &Figure, bound: &Bound, law: &JointCone, scene: &mut 
     let place = |direction: Vec3| centre + frame * direction * radius;
     let cone = &law.cone;
     let reach = Ranged::of(figure, bound, law).map_or_else(|| Reach::of_cone(cone), |r| r.reach());
-    reach.draw(&place, scene);
+    // Where a learned limit says more, its lines are enough.
+    let more = |other: &Bound| {
+        let component = &figure.model.components()[other.component.index()];
+        let numbers: Vec<f64> = figure.pose.bounded(other).collect();
+        let learned = matches!(component.law, Law::Field(_));
+        let turned = || field::turned(figure, other, field::rotation(&numbers)?);
+        learned && turned().is_some_and(|(of, _)| of == segment)
+    };
+    reach.draw(&place, !figure.program.bounds().iter().any(more), scene);
     for edge in reach.edges() {
         let edge: Vec<Vec3> = edge.into_iter().map(place).collect();
         scene.surfaces.push(fan(centre, &edge, palette::LIMIT).with_opacity(0.4 * OPACITY));
@@ -104,8 +112,13 @@ impl<'a> Ranged<'a> {
         };
         // Two pairs of angles point there.
         let room = |sign: f64| {
-            // Near the first axis its angle matters little.
-            let first = inside((sign * up).atan2(-sign * side), self.ranges[0]) * sine;
+            let turn = inside((sign * up).atan2(-sign * side), self.ranges[0]);
+            let first = match turn.abs() {
+                turn if turn.is_infinite() => f64::INFINITY,
+                // To the plane through the axis where the angle ends, or to the axis.
+                small if small < 0.5 * PI => (sine * turn.sin()).clamp(-1.0, 1.0).asin(),
+                _ => sine.min(1.0).asin().copysign(turn),
+            };
             first.min(inside((sign * sine).atan2(along) - lead, self.ranges[1]))
         };
         room(1.0).max(room(-1.0))
@@ -130,7 +143,7 @@ impl<'a> Ranged<'a> {
             let v = turned * v;
             self.cone.distance(v).0.min(self.room(v))
         };
-        let mut patch = Patch::of(&value, LEVEL);
+        let mut patch = Patch::of_distance(&value, LEVEL);
         patch.corners.iter_mut().for_each(|v| *v = turned * *v);
         Reach::of_patch(self.cone, patch)
     }
@@ -283,7 +296,6 @@ fn beside(figure: &Figure) -> Option<Pose> {
 mod tests {
     use super::super::super::figure::tests::seen;
     use super::*;
-    use condyle_model::Law;
 
     /// The cone of the shipped shoulder speaks of the humerus in the thorax, that of the hip of the femur in the
     /// pelvis: also where both are turned.

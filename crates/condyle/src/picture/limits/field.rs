@@ -65,7 +65,7 @@ pub(super) fn draw(figure: &Figure, bound: &Bound, law: &FieldLimit, scene: &mut
     let reach = figure.reaches.of(bound.component, law, &numbers, bone);
     let radius = (0.45 * length).clamp(1.5 * figure.unit, 4.0 * figure.unit);
     let place = |direction: Vec3| centre + frame * direction * radius;
-    reach.draw(&place, scene);
+    reach.draw(&place, true, scene);
     let tip = place(now * bone);
     scene.lines.push(value(centre, tip));
     let mut mark = Surface::empty(palette::VALUE);

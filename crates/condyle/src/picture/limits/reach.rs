@@ -41,15 +41,20 @@ pub(super) struct Reach {
 }
 
 impl Reach {
-    /// Draws it about a joint: the part of the sphere, its boundary, and lines of equal twist with the degrees.
-    pub(super) fn draw(&self, place: &dyn Fn(Vec3) -> Vec3, scene: &mut Scene) {
+    /// Draws it about a joint: the part of the sphere, its boundary, and if asked for lines of equal twist with the degrees.
+    pub(super) fn draw(&self, place: &dyn Fn(Vec3) -> Vec3, lined: bool, scene: &mut Scene) {
         scene.surfaces.extend(self.shades(place));
         for edge in self.edges() {
             scene.lines.push(line(edge.iter().map(|v| place(*v)).collect(), 2.0, palette::LIMIT));
         }
-        for (degrees, path) in self.lines() {
+        let lines = if lined { self.lines() } else { vec![] };
+        let mut named = None;
+        for (degrees, path) in lines {
             let points: Vec<Vec3> = path.iter().map(|v| place(*v * 1.002)).collect();
-            label(points[points.len() / 2], &format!("{degrees:.0}°"), palette::TEXT, scene);
+            // The longest line of each twist is named, which comes first.
+            if named.replace(degrees) != Some(degrees) {
+                label(points[points.len() / 2], &format!("{degrees:.0}°"), palette::TEXT, scene);
+            }
             let thin = line(points, 1.0, palette::TEXT);
             scene.lines.push(Line { opacity: 0.55, through: 0.15, ..thin });
         }
@@ -139,13 +144,14 @@ impl Reach {
         let step = STEPS.into_iter().find(|step| levels(*step).count() <= MOST_LINES);
         let mut lines = vec![];
         for degrees in levels(step.unwrap_or(120.0)) {
-            for line in self.patch.contour(&self.widths, degrees.to_radians()) {
-                // Specks are left out.
-                let length: f64 = line.windows(2).map(|ends| (ends[1] - ends[0]).norm()).sum();
-                if length > 0.2 {
-                    lines.push((degrees, line));
-                }
-            }
+            let length = |line: &Vec<Vec3>| -> f64 {
+                line.windows(2).map(|ends| (ends[1] - ends[0]).norm()).sum()
+            };
+            let mut level = self.patch.contour(&self.widths, degrees.to_radians());
+            // Specks are left out.
+            level.retain(|line| length(line) > 0.2);
+            level.sort_by(|a, b| length(b).total_cmp(&length(a)));
+            lines.extend(level.into_iter().map(|line| (degrees, line)));
         }
         lines
     }
