@@ -8,13 +8,14 @@
 //! ```
 //!
 //! Coordinates that a pose does not name keep their defaults. Poses with a `"time": seconds` each are key
-//! poses, between which a motion goes ([`Poses::keys`]).
+//! poses, between which a motion goes ([`Poses::keys`]); `"between": "linear"` or `"spline"` says how coordinates
+//! leave a pose.
 
 use crate::text::{number, utf8};
 use crate::{Diagnostic, Error, LengthUnit, Place, Read};
 use condyle_diagnostics::Warnings;
 use condyle_model::{CoordinateKind, Model};
-use condyle_motion::{Keys, Motion};
+use condyle_motion::{Interpolation, Keys, Motion};
 use serde_json::Value;
 
 /// Poses by the names of coordinates, before a model says what these are.
@@ -95,7 +96,8 @@ impl Poses {
     /// The key poses of a model: each has a `time` in seconds, later than that of the one before.
     ///
     /// # Errors
-    /// As [`Poses::resolve`]; `poses/time` where a time is missing, no number, or not after the one before.
+    /// As [`Poses::resolve`]; `poses/time` where a time is missing, no number, or not after the one before;
+    /// `poses/between` where the way to the next pose is not known.
     ///
     /// ```
     /// use condyle_formats::poses;
@@ -136,7 +138,20 @@ impl Poses {
                 };
                 return Err(wrong(message, "give each pose a later time"));
             }
-            let entries = entries.iter().filter(|(key, _)| key != TIME);
+            let leave = match entries.iter().find(|(key, _)| key == BETWEEN).map(|(_, v)| v) {
+                None => None,
+                Some(way) => match way.as_str() {
+                    Some("linear") => Some(Interpolation::Linear),
+                    Some("spline") => Some(Interpolation::Spline),
+                    _ => {
+                        let error = Error::new("poses/between", format!("`between` is {way}"))
+                            .with_help("give \"linear\" or \"spline\"");
+                        return Err(self.located(index, error));
+                    }
+                },
+            };
+            keys.leave.push(leave);
+            let entries = entries.iter().filter(|(key, _)| key != TIME && key != BETWEEN);
             let (stored, named) =
                 pose(model, entries).map_err(|error| self.located(index, error))?;
             keys.times.push(time);
@@ -183,6 +198,13 @@ impl Poses {
         warnings.finish()
     }
 
+    /// Whether these are key poses: a list in which each has a time.
+    #[must_use]
+    pub fn are_keys(&self) -> bool {
+        let timed = |pose: &Vec<(String, Value)>| pose.iter().any(|(key, _)| key == TIME);
+        self.listed && !self.poses.is_empty() && self.poses.iter().all(timed)
+    }
+
     fn located(&self, index: usize, error: Error) -> Error {
         let said = error.into_diagnostics().swap_remove(0);
         let message = format!("{}{}", self.place(index), said.message);
@@ -192,6 +214,8 @@ impl Poses {
 
 /// The key of a time among those of coordinates.
 const TIME: &str = "time";
+/// The key of the way to the next pose.
+const BETWEEN: &str = "between";
 
 /// The stored numbers of one pose, and which coordinates it names.
 fn pose<'p>(
@@ -329,6 +353,24 @@ mod tests {
             stored[0] = number;
             let again = read(write(&model, &stored).as_bytes()).unwrap().value;
             assert_eq!(again.resolve(&model).unwrap().motion.frames[0][0], number);
+        }
+    }
+
+    #[test]
+    fn a_key_may_say_how_it_is_left() {
+        let text =
+            br#"[{"time": 0, "between": "linear"}, {"time": 1, "between": "spline"}, {"time": 2}]"#;
+        let poses = read(text).unwrap().value;
+        assert!(poses.are_keys());
+        let ways = [Some(Interpolation::Linear), Some(Interpolation::Spline), None];
+        assert_eq!(poses.keys(&model()).unwrap().leave, ways);
+        for way in ["1", "\"cubic\"", "null"] {
+            let text = format!("[{{\"time\": 0, \"between\": {way}}}]");
+            let said = read(text.as_bytes()).unwrap().value.keys(&model()).unwrap_err();
+            assert_eq!(said.code(), "poses/between");
+        }
+        for none in ["[]", "{\"time\": 1}", "[{\"time\": 1}, {}]"] {
+            assert!(!read(none.as_bytes()).unwrap().value.are_keys(), "{none}");
         }
     }
 

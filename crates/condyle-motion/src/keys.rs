@@ -19,6 +19,9 @@ pub struct Keys {
     pub frames: Vec<Vec<f64>>,
     /// For each key and coordinate whether the key says something about it.
     pub named: Vec<Vec<bool>>,
+    /// For each key how coordinates of one number leave it; `None`, and what is missing at the end of the list, is
+    /// the way that is asked for of all.
+    pub leave: Vec<Option<Interpolation>>,
 }
 
 /// How coordinates of one number go from key to key.
@@ -42,6 +45,22 @@ impl Keys {
     /// # Errors
     /// `keys/none` without keys, `keys/rate` if the rate is no positive number or gives more than a million
     /// frames, `keys/times` if times do not rise.
+    ///
+    /// ```
+    /// use condyle_motion::{Interpolation, Keys};
+    /// # use condyle_math::Vec3;
+    /// # use condyle_model::ModelBuilder;
+    /// # let mut b = ModelBuilder::new("arm");
+    /// # let forearm = b.segment("forearm", None);
+    /// # b.hinge("elbow", forearm, "flexion", Vec3::Z);
+    /// # let model = b.build()?;
+    /// let named = vec![vec![true]; 2];
+    /// let keys = Keys { times: vec![0.0, 1.0], frames: vec![vec![0.0], vec![2.0]], named, leave: vec![] };
+    /// let motion = keys.sample(&model, 4.0, Interpolation::Spline)?;
+    /// // A smooth step, 3 t² - 2 t³, at a quarter of the way.
+    /// assert_eq!(motion.frames[1], [2.0 * (3.0 / 16.0 - 2.0 / 64.0)]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn sample(
         &self,
         model: &Model,
@@ -56,16 +75,31 @@ impl Keys {
             let message = format!("{rate} frames a second from {first} to {last} s");
             return Err(Error::new("keys/rate", message).with_help("give a rate such as 60"));
         }
-        if !self.times.windows(2).all(|pair| pair[0] < pair[1]) {
-            return Err(Error::new("keys/times", "the times of the key poses do not rise"));
-        }
         let at = |frame: usize| {
             let time = first + frame as f64 / rate;
             // The last key itself where rounding alone is between.
             if (last - time) * rate < WHOLE { last } else { time }
         };
-        let times: Vec<f64> = (0..=frames as usize).map(at).collect();
-        let mut motion = Motion { frames: vec![self.frames[0].clone(); times.len()], times };
+        self.at(model, (0..=frames as usize).map(at).collect(), between)
+    }
+
+    /// The motion at given times in seconds, in any order.
+    ///
+    /// # Errors
+    /// `keys/none` without keys, `keys/times` if times of keys do not rise.
+    pub fn at(
+        &self,
+        model: &Model,
+        times: Vec<f64>,
+        between: Interpolation,
+    ) -> Result<Motion, Error> {
+        let Some(first) = self.frames.first() else {
+            return Err(Error::new("keys/none", "there are no key poses"));
+        };
+        if !self.times.windows(2).all(|pair| pair[0] < pair[1]) {
+            return Err(Error::new("keys/times", "the times of the key poses do not rise"));
+        }
+        let mut motion = Motion { frames: vec![first.clone(); times.len()], times };
         for id in model.coordinate_ids() {
             let keys: Vec<usize> =
                 (0..self.times.len()).filter(|&key| self.named[key][id.index()]).collect();
@@ -88,11 +122,8 @@ impl Keys {
         let place = model.stored_range(id);
         let times: Vec<f64> = keys.iter().map(|&key| self.times[key]).collect();
         let values: Vec<f64> = keys.iter().map(|&key| self.frames[key][place.start]).collect();
-        let slopes = match between {
-            Interpolation::Linear => vec![],
-            Interpolation::Spline if place.len() == 1 => slopes(&times, &values),
-            Interpolation::Spline => vec![],
-        };
+        let slopes = slopes(&times, &values);
+        let leave = |key: usize| self.leave.get(key).copied().flatten().unwrap_or(between);
         for (time, frame) in motion.times.iter().zip(&mut motion.frames) {
             let after = times.partition_point(|key| key <= time);
             if after == 0 || after == keys.len() {
@@ -111,11 +142,12 @@ impl Keys {
                 frame[place.clone()].copy_from_slice(&turned(from, to, share).to_array());
                 continue;
             }
-            frame[place.start] = match slopes.get(a..=b) {
-                Some(&[slope, next]) => {
-                    hermite([values[a], values[b]], [slope * width, next * width], share)
+            frame[place.start] = match leave(keys[a]) {
+                Interpolation::Spline => {
+                    let ends = [slopes[a] * width, slopes[b] * width];
+                    hermite([values[a], values[b]], ends, share)
                 }
-                _ => values[a] + (values[b] - values[a]) * share,
+                Interpolation::Linear => values[a] + (values[b] - values[a]) * share,
             };
         }
     }
@@ -241,6 +273,21 @@ mod tests {
         let quotient = (fine.frames[20001][0] - fine.frames[19999][0]) * 5000.0;
         // The cubics have other second derivatives: of the order of their jump times 1e-4.
         assert!((quotient - slope).abs() < 1e-3, "{quotient} {slope}");
+    }
+
+    #[test]
+    fn a_key_says_how_it_is_left_and_any_time_may_be_asked() {
+        let list = [(0.0, 0.0), (1.0, 1.0), (2.0, 3.0)].map(|(t, a)| (t, Some(a), None, None));
+        let mut keys = keys(&list);
+        keys.leave = vec![Some(Interpolation::Linear)];
+        let motion = keys.at(&model(), vec![5.0, 0.25, 1.5, -1.0], Interpolation::Spline).unwrap();
+        let angles: Vec<f64> = motion.frames.iter().map(|frame| frame[0]).collect();
+        // Between the last two: slope w₁ + w₂ over w₁/1 + w₂/2 with w₁ = w₂ = 3 at 1 s, so 4/3, and 0 at 2 s.
+        // The cubic at its middle: the mean of the ends and an eighth of the difference of the slopes.
+        let middle = 2.0 + (4.0 / 3.0) / 8.0;
+        for (angle, expected) in angles.iter().zip([3.0, 0.25, middle, 0.0]) {
+            assert!((angle - expected).abs() < 1e-14, "{angles:?}");
+        }
     }
 
     #[test]

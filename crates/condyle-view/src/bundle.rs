@@ -16,10 +16,12 @@ pub const PAGE: &str = include_str!("../page/dist/index.html");
 
 /// The name of the evaluator, WebAssembly packed by LZMA, a third smaller than by gzip; the page unpacks it.
 pub(crate) const CORE: &str = "core.wasm.lzma";
+/// The name of the readers of all formats, which the page fetches when a file needs them.
+pub(crate) const READERS: &str = "readers.wasm.lzma";
 /// The name of the program of the page.
 pub(crate) const PROGRAM: &str = "page.js";
 
-const ASSETS: [Asset; 2] = [
+const ASSETS: [Asset; 3] = [
     Asset {
         name: PROGRAM,
         media_type: "text/javascript; charset=utf-8",
@@ -29,6 +31,11 @@ const ASSETS: [Asset; 2] = [
         name: CORE,
         media_type: "application/octet-stream",
         bytes: include_bytes!("../page/dist/assets/core.wasm.lzma"),
+    },
+    Asset {
+        name: READERS,
+        media_type: "application/octet-stream",
+        bytes: include_bytes!("../page/dist/assets/readers.wasm.lzma"),
     },
 ];
 

@@ -1,9 +1,11 @@
 //! Poses of all shipped models as the library computes them, for the check that the committed WebAssembly gives the same:
-//! `golden FOLDER` writes there a resolved model `NAME.json` and its poses `NAME.golden.json` for each.
+//! `golden FOLDER` writes there a resolved model `NAME.json` and its poses `NAME.golden.json` for each; and the same for
+//! files of formats that the second module reads, an `.osim` and a `.glb`.
 
-use condyle::{CoordinateKind, formats::exchange, shipped};
-use condyle_wasm::Stage;
-use serde_json::json;
+use condyle::formats::{Format, exchange};
+use condyle::{CoordinateKind, Mode, Model, Motion, encode, shipped};
+use condyle_wasm::{Stage, converted};
+use serde_json::{Value, json};
 use std::path::Path;
 
 /// Poses of each model, open and within limits.
@@ -16,23 +18,52 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for name in shipped::names() {
         let model = shipped::read(name)?.value.model;
         std::fs::write(folder.join(format!("{name}.json")), exchange::write(&model))?;
-        let mut stage = Stage::new(model);
-        let mut poses = vec![];
-        for number in 0..POSES {
-            for within_limits in [false, true] {
-                let asked = asked(&stage, number);
-                stage.actors[0].asked.copy_from_slice(&asked);
-                if !stage.pose(0, within_limits) {
-                    return Err(format!("{name}: pose {number} cannot be evaluated").into());
-                }
-                let actor = &stage.actors[0];
-                poses.push(json!({ "asked": asked, "within_limits": within_limits,
-                    "effective": actor.effective, "places": actor.places }));
-            }
-        }
-        std::fs::write(folder.join(format!("{name}.golden.json")), json!(poses).to_string())?;
+        std::fs::write(folder.join(format!("{name}.json.golden.json")), poses(model)?)?;
+    }
+    for (name, bytes) in foreign()? {
+        let answer = converted(name, &bytes, None).map_err(|fault| fault.to_string())?;
+        let answer: Value = serde_json::from_str(&answer.text)?;
+        let text = answer["model"].as_str().ok_or("no model")?;
+        let model = exchange::read(text.as_bytes())?.value;
+        std::fs::write(folder.join(name), &bytes)?;
+        std::fs::write(folder.join(format!("{name}.golden.json")), poses(model)?)?;
     }
     Ok(())
+}
+
+/// The name of a file, and its bytes.
+type Foreign = (&'static str, Vec<u8>);
+
+/// A leg of OpenSim, and a scene with a motion.
+fn foreign() -> Result<[Foreign; 2], Box<dyn std::error::Error>> {
+    let leg = shipped::read("legs")?.value.model;
+    let osim = Format::of_ending("osim").ok_or("no format")?;
+    let arm = shipped::read("knee")?.value.model;
+    let mut frames = vec![arm.defaults(); 2];
+    frames[1][0] -= 0.5;
+    let motion = Motion { times: vec![0.0, 1.0], frames };
+    let scene = encode::scene(&arm, &motion, Mode::Open, None)?;
+    Ok([("legs.osim", encode::model(osim, &leg)?.value), ("knee.glb", scene.value)])
+}
+
+/// Poses of a model, open and within limits.
+fn poses(model: Model) -> Result<String, String> {
+    let name = model.name().to_owned();
+    let mut stage = Stage::new(model);
+    let mut poses = vec![];
+    for number in 0..POSES {
+        for within_limits in [false, true] {
+            let asked = asked(&stage, number);
+            stage.actors[0].asked.copy_from_slice(&asked);
+            if !stage.pose(0, within_limits) {
+                return Err(format!("{name}: pose {number} cannot be evaluated"));
+            }
+            let actor = &stage.actors[0];
+            poses.push(json!({ "asked": asked, "within_limits": within_limits,
+                "effective": actor.effective, "places": actor.places }));
+        }
+    }
+    Ok(json!(poses).to_string())
 }
 
 /// Numbers within the ranges and a little beyond, the same in every run.

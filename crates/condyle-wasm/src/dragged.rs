@@ -1,6 +1,7 @@
 //! A point that is dragged, and the body that follows it.
 
 use crate::answer::{Answer, Fault, sentence};
+use crate::goals::kept;
 use crate::stage::Stage;
 use condyle::math::Vec3;
 use condyle::posing::{Aim, Goal, Goals, follow};
@@ -11,7 +12,7 @@ impl Stage {
     /// `{"actor": 0, "segment": number, "point": [x, y, z], "target": [x, y, z], "hold": [coordinate, …]}`: moves the
     /// pose so that a point of a segment comes as near to a place as limits and loops allow, from where it is. The
     /// pose where dragging began is the one to stay near to; `"drop"` ends it. The answer says how far off the
-    /// point is.
+    /// point is. Goals that stay (`"goals"`) hold meanwhile, in place of `hold`; the answer says what each of them lacks.
     pub(crate) fn dragged(&mut self, question: &Value) -> Result<Answer, Fault> {
         let number = question["actor"].as_u64().unwrap_or(0) as usize;
         let point = vector(&question["point"]).ok_or_else(|| sentence("no point is dragged"))?;
@@ -27,27 +28,34 @@ impl Stage {
             .iter()
             .filter_map(|index| self.model.coordinate_ids().nth(index.as_u64()? as usize))
             .collect();
+        let pins = self.goals.as_ref().map(kept);
+        let weight = pins.as_ref().map(|_| 1.0);
         let goals = self.drag.get_or_insert_with(|| {
             let mut goals = Goals::of(&self.model);
             goals.rest = goals.rest.around(&self.model, &actor.effective);
             goals
         });
         goals.held = held;
+        if let Some(pins) = &pins {
+            // Goals say what carries the body.
+            goals.held.clone_from(&pins.held);
+            goals.rest.stiffness.clone_from(&pins.rest.stiffness);
+        }
         let aim = Aim::Point { point: (Some(segment), point), at: (None, target) };
-        goals.goals = vec![Goal { aim, weight: None }];
+        goals.goals = pins.map_or_else(Vec::new, |pins| pins.goals);
+        goals.goals.push(Goal { aim, weight });
         let Some(answer) = follow(&self.model, goals, &actor.effective) else {
             return Err(sentence("the pose cannot be evaluated"));
         };
         // A descent may end a hair outside of a limit, and in the middle of a loop: what is shown is legal.
-        let before = actor.asked.clone();
-        actor.asked.copy_from_slice(&answer.coordinates);
-        let closed = answer.closure_error <= 1e-4;
-        if !closed || !self.pose(number, true) {
-            self.actors[number].asked.copy_from_slice(&before);
-            self.pose(number, true);
+        let iterations = answer.iterations;
+        if answer.closure_error <= 1e-4 {
+            self.move_to(number, &answer.coordinates, true);
         }
         let off = self.off(number, segment, point, target);
-        Ok(Answer::of(&json!({ "off": off, "iterations": answer.iterations })))
+        Ok(Answer::of(
+            &json!({ "off": off, "iterations": iterations, "goals": self.lacking(number) }),
+        ))
     }
 
     /// How far a point is from a place, in metres.

@@ -20,12 +20,18 @@
 
 mod answer;
 mod bones;
-#[cfg(target_arch = "wasm32")]
+#[cfg(all(target_arch = "wasm32", not(feature = "readers")))]
 mod border;
 mod checked;
+#[cfg(feature = "readers")]
+mod converted;
 mod described;
 mod dragged;
+mod goals;
+mod keyed;
 mod network;
+#[cfg(all(target_arch = "wasm32", feature = "readers"))]
+mod readers;
 mod reading;
 mod saved;
 mod shown;
@@ -34,6 +40,8 @@ mod stage;
 
 pub use answer::{Answer, Fault};
 pub use bones::{skins, surfaces};
+#[cfg(feature = "readers")]
+pub use converted::converted;
 pub use reading::{Given, read};
 pub use shown::Shown;
 pub use stage::{Actor, Stage};

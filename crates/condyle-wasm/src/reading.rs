@@ -4,6 +4,7 @@
 //! stay small. What is not here, a server reads.
 
 use crate::answer::{Answer, Fault, fault, said, sentence};
+use crate::goals;
 use crate::shown::Shown;
 use condyle::formats::{bvh, c3d, csv, document, exchange, poses, sto, trc};
 use condyle::tracking::{Request, track};
@@ -33,13 +34,29 @@ pub fn read(model: Option<&Model>, name: &str, bytes: &[u8]) -> Result<Given, Fa
     let needed = || model.ok_or_else(|| sentence("give a model first"));
     let wrong = |error: Error| fault(&error);
     match &ending[..] {
-        "toml" => documented(std::str::from_utf8(bytes).map_err(|e| sentence(e.to_string()))?),
+        "toml" => {
+            let text = std::str::from_utf8(bytes).map_err(|e| sentence(e.to_string()))?;
+            if document::kind(bytes) != Some(document::Kind::Goals) {
+                return documented(text);
+            }
+            needed()?;
+            let goals = goals::described(text, model)?;
+            let text = json!({ "motion": null, "goals": goals, "warnings": [] });
+            Ok(Given::Motion(Answer::of(&text)))
+        }
         "json" if is_model(bytes) => {
             let read = exchange::read(bytes).map_err(wrong)?;
             Ok(alone(read.value, &read.warnings))
         }
         "json" => {
             let read = poses::read(bytes).map_err(wrong)?;
+            if read.value.are_keys() {
+                // The page has their file, and asks for what is between them.
+                let keys: Value = serde_json::from_slice(bytes).unwrap_or(Value::Null);
+                let warnings = warned(&read.warnings);
+                let text = json!({ "motion": null, "keys": keys, "warnings": warnings });
+                return Ok(Given::Motion(Answer::of(&text)));
+            }
             let resolved = read.value.resolve(needed()?).map_err(wrong)?;
             let shown = Shown::of(name.to_owned(), resolved.motion);
             Ok(Given::Motion(answered(&shown, &read.warnings)))

@@ -1,6 +1,7 @@
 //! A model on the page, and its poses.
 
 use crate::answer::{Answer, Fault, fault, sentence};
+use crate::keyed::Keyed;
 use condyle::math::Affine;
 use condyle::picture::Reaches;
 use condyle::posing::Goals;
@@ -23,6 +24,10 @@ pub struct Stage {
     pub actors: Vec<Actor>,
     /// What is dragged now.
     pub(crate) drag: Option<Goals>,
+    /// The goals that are kept.
+    pub(crate) goals: Option<Goals>,
+    /// The key poses that are on the timeline.
+    pub(crate) keyed: Option<Keyed>,
 }
 
 /// A pose of the model, in buffers that stay where they are.
@@ -51,7 +56,17 @@ impl Stage {
         });
         let back = back.collect();
         let reaches = Reaches::default();
-        let mut stage = Self { model, program, figure, reaches, back, actors: vec![], drag: None };
+        let mut stage = Self {
+            model,
+            program,
+            figure,
+            reaches,
+            back,
+            actors: vec![],
+            drag: None,
+            goals: None,
+            keyed: None,
+        };
         stage.add_actor();
         stage
     }
@@ -106,6 +121,13 @@ impl Stage {
                 Ok(Answer::default())
             }
             "actor" => Ok(Answer::of(&Value::from(self.add_actor()))),
+            "goals" => self.goals(&question),
+            "lacking" => {
+                let actor = question["actor"].as_u64().unwrap_or(0) as usize;
+                Ok(Answer::of(&Value::from(self.lacking(actor))))
+            }
+            "keys" => self.keys(&question),
+            "keyed" => self.keyed(&question),
             "check" => self.checked(&question),
             "save" => self.saved(&question),
             other => Err(sentence(format!("nothing is asked by `{other}`"))),
@@ -192,7 +214,10 @@ mod tests {
         for question in ["", "{", "[]", "{}", r#"{"ask": 3}"#, r#"{"ask": "all"}"#] {
             assert!(stage.ask(question).is_err(), "{question}");
         }
-        for ask in ["describe", "bones", "signs", "network", "live", "drag", "check", "save"] {
+        for ask in [
+            "describe", "bones", "signs", "network", "live", "drag", "check", "save", "keys",
+            "keyed",
+        ] {
             // Without what belongs to it, a question has some answer or a fault, and no panic.
             let _ = stage.ask(&format!(r#"{{"ask": "{ask}"}}"#));
         }

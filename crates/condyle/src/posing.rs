@@ -29,7 +29,7 @@ use condyle_formats::document::goals::{GoalList, Named, NamedAim, NamedPoint};
 use condyle_math::{Quat, Vec3};
 use condyle_model::{CoordinateId, CoordinateKind, Mode, Model, Pose, Program, SegmentId};
 pub use condyle_track::goal::{
-    Aim, Anchor, Answer, By, Goal, Goals, MET, Miss, Rest, Side, follow, solve,
+    Aim, Anchor, Answer, By, Goal, Goals, MET, Miss, Rest, Side, follow, misses, solve,
 };
 
 /// A pose, and what was asked of it.

@@ -7,9 +7,10 @@ use crate::tool;
 use std::process::Command;
 use std::time::Duration;
 
-/// What is run: the page as a file and as a static site, the page as it is served, which edits a model, and what people
-/// need who see little or use keys alone.
-const SCRIPTS: [&str; 4] = ["browser.mjs", "authoring.mjs", "accessible.mjs", "looks.mjs"];
+/// What is run: the page as a file and as a static site, the page as it is served, which edits a model, what people need
+/// who see little or use keys alone, meshes, skins and rows of figures, and poses over time and by goals.
+const SCRIPTS: [&str; 5] =
+    ["browser.mjs", "authoring.mjs", "accessible.mjs", "looks.mjs", "posing.mjs"];
 /// The texts of the shipped models.
 const MODELS: &str = "crates/condyle/models";
 /// The longest that each of them may take, on a machine that does other things as well.

@@ -1,4 +1,5 @@
-//! The evaluator of the page in Node: it poses all shipped models as the library does, to 1e-12.
+//! The evaluator of the page in Node: it poses all shipped models as the library does, to 1e-12, and so it does those of files
+//! that the second module reads.
 
 use super::page::PAGE;
 use crate::cargo;
@@ -16,8 +17,8 @@ pub(super) fn run(context: &Context) -> Outcome {
 }
 
 fn compare(context: &Context) -> Result<(), String> {
-    let folder = context.root.join("target/golden");
-    let example = ["--package", "condyle-wasm", "--example", "golden"];
+    let folder = context.root.join("target/golden-poses");
+    let example = ["--package", "condyle-wasm", "--features", "readers", "--example", "golden"];
     let programs = cargo::build(context, &example)?;
     let (_, program) = programs.first().ok_or("cargo named no program")?;
     tool::run(context, Command::new(program).arg(&folder))?;

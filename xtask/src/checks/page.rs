@@ -29,7 +29,11 @@ const SOURCES: [&str; 6] = [
     "crates/condyle-wasm/src",
 ];
 /// What is built.
-const BUILT: [&str; 3] = ["index.html", "assets/page.js", "assets/core.wasm.lzma"];
+const BUILT: [&str; 4] = ["index.html", "assets/page.js", "assets/core.wasm.lzma", READERS];
+/// Readers of all formats, which the page fetches when a file needs them.
+const READERS: &str = "assets/readers.wasm.lzma";
+/// The most that they may weigh, in bytes.
+const HEAVIEST_READERS: usize = 1_500_000;
 /// The list of hashes.
 const HASHES: &str = "crates/condyle-view/page/dist/sources.sha256";
 /// The most that the page may weigh as a server that packs sends it, in bytes.
@@ -70,14 +74,18 @@ fn check(context: &Context) -> Result<(), String> {
 /// The page as it is sent: text packed by gzip, the evaluator as it is packed.
 fn weight(root: &Path) -> Result<(), String> {
     let mut all = 0;
-    for name in BUILT {
+    let size = read(&root.join(PAGE).join("dist").join(READERS))?.len();
+    if size > HEAVIEST_READERS {
+        return Err(format!("the readers of all formats weigh {size} bytes"));
+    }
+    for name in BUILT.into_iter().filter(|name| *name != READERS) {
         let bytes = read(&root.join(PAGE).join("dist").join(name))?;
         let mut packed = GzEncoder::new(vec![], Compression::default());
         packed.write_all(&bytes).map_err(|error| error.to_string())?;
         let packed = packed.finish().map_err(|error| error.to_string())?;
         all += packed.len().min(bytes.len());
     }
-    println!("   the page weighs {} kB", all / 1000);
+    println!("   the page weighs {} kB, and readers of all formats {} kB", all / 1000, size / 1000);
     if all > HEAVIEST { Err(format!("the page weighs {all} bytes")) } else { Ok(()) }
 }
 
@@ -130,17 +138,24 @@ fn collect(path: &Path, files: &mut Vec<PathBuf>) -> Result<(), String> {
 /// Builds the evaluator and the page.
 fn build(context: &Context) -> Result<(), String> {
     let folder = context.root.join("target/page");
-    let mut command = cargo::command(context);
-    command.args(["build", "--package", "condyle-wasm", "--profile", "page", "--target", BROWSER]);
-    tool::run(context, command.env("CARGO_TARGET_DIR", &folder))?;
-    let core = folder.join(BROWSER).join("page/condyle_wasm.wasm");
+    let built = folder.join(BROWSER).join("page/condyle_wasm.wasm");
+    let mut modules = vec![];
+    for (name, features) in [("core.wasm", ""), ("readers.wasm", "readers")] {
+        let mut command = cargo::command(context);
+        command.args(["build", "--package", "condyle-wasm", "--profile", "page", "--target"]);
+        command.args([BROWSER, "--features", features]);
+        tool::run(context, command.env("CARGO_TARGET_DIR", &folder))?;
+        let module = folder.join(name);
+        std::fs::copy(&built, &module).map_err(|error| format!("{name}: {error}"))?;
+        modules.push(module);
+    }
     let page = context.root.join(PAGE);
     if !page.join("node_modules").is_dir() {
         tool::run(context, Command::new("npm").arg("ci").current_dir(&page))?;
     }
     let types = page.join("node_modules/typescript/bin/tsc");
     tool::run(context, Command::new("node").arg(types).arg("--noEmit").current_dir(&page))?;
-    tool::run(context, Command::new("node").arg("build.mjs").arg(core).current_dir(&page))
+    tool::run(context, Command::new("node").arg("build.mjs").args(modules).current_dir(&page))
 }
 
 #[cfg(test)]

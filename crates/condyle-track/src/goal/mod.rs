@@ -53,7 +53,7 @@ mod tests;
 pub use answer::{Answer, By, Miss};
 pub use legal::{nearest_closed, nearest_legal};
 pub use rest::{REST_ANGLE, REST_LENGTH, Rest};
-pub use search::{follow, solve};
+pub use search::{follow, misses, solve};
 
 use condyle_math::{Quat, Vec3};
 use condyle_model::{CoordinateId, CoordinateKind, Model, Program, SegmentId};

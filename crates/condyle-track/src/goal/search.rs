@@ -152,6 +152,39 @@ pub fn follow(model: &Model, goals: &Goals, start: &[f64]) -> Option<Answer> {
     descend(&question, stage, start, &FOLLOWING).map(|end| end.answer)
 }
 
+/// What goals lack at a pose, in their order; nothing is moved.
+///
+/// # Panics
+/// If `stored` has not as many numbers as the model stores.
+///
+/// ```
+/// use condyle_math::Vec3;
+/// use condyle_model::ModelBuilder;
+/// use condyle_track::goal::{Aim, Goal, Goals, misses};
+/// let mut b = ModelBuilder::new("arm");
+/// let forearm = b.segment("forearm", None);
+/// b.hinge("elbow", forearm, "flexion", Vec3::Z);
+/// let model = b.build().unwrap();
+/// let wrist = (Some(forearm), Vec3::new(0.25, 0.0, 0.0));
+/// let aim = Aim::Point { point: wrist, at: (None, Vec3::new(0.25, 0.10, 0.0)) };
+/// let mut goals = Goals::of(&model);
+/// goals.goals.push(Goal { aim, weight: None });
+/// assert_eq!(misses(&model, &goals, &[0.0])[0].off, 0.10);
+/// ```
+pub fn misses(model: &Model, goals: &Goals, stored: &[f64]) -> Vec<Miss> {
+    let question = Question::new(model, goals);
+    let stage = Stage {
+        exact: Some(1.0),
+        weighted: 1.0,
+        rest: 1.0,
+        near: goals.rest.clone(),
+        curved: false,
+    };
+    let mut descent = Descent::new(&question, stage, stored);
+    descent.evaluate_at(stored);
+    answer(&descent, 0, vec![]).misses
+}
+
 /// Whether an answer has loops closed where another has not, or misses the goals by less.
 fn misses_less(a: &Answer, b: &Answer) -> bool {
     let closed = |answer: &Answer| answer.closure_error <= super::MET;

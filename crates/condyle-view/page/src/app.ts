@@ -6,11 +6,14 @@ import { Curves } from "./curves";
 import { byId, element } from "./dom";
 import { Figure, Shape } from "./figure";
 import { frames } from "./files";
+import { GoalPanel } from "./goals";
 import { History } from "./history";
 import { Inspector } from "./inspector";
+import { Keys } from "./keys";
 import { Labels } from "./labels";
 import type { Look, Looks } from "./looks";
 import { Markers } from "./markers";
+import { take } from "./readers";
 import type { Session } from "./session";
 import { type Kind, Signs } from "./signs";
 import { Sliders } from "./sliders";
@@ -27,6 +30,8 @@ export class App {
   readonly labels = new Labels(byId("labels"), this.view);
   readonly sliders: Sliders;
   readonly inspector: Inspector;
+  readonly keys: Keys;
+  readonly goals: GoalPanel;
   model: Model | null = null;
   title = "condyle";
   motions: Motion[] = [];
@@ -64,6 +69,10 @@ export class App {
       },
     });
     this.inspector = new Inspector(this, byId("right"));
+    this.keys = new Keys(this);
+    this.history.parts.push({ get: () => this.keys.list, set: (list: Keys["list"]) => this.keys.restore(list) });
+    byId("coordinates").before(this.keys.root);
+    this.goals = new GoalPanel(this);
     byId("coordinates").append(this.sliders.root);
     byId("bottom").append(this.curves.root, this.timeline.root);
     this.view.content.add(this.signs.group, this.markers.group);
@@ -76,6 +85,11 @@ export class App {
   /** Shows a model; motions that came with it, and the old pose where `kept` and names are the same. */
   open(model: Model, title: string, motions: Motion[], kept = false): void {
     const before = kept && this.model ? named(this.model) : null;
+    // Numbers of segments and sets may be others in the new model; names say what was looked at.
+    const old = kept ? this.model?.about : undefined;
+    const chosen = { segment: this.selected === null ? undefined : old?.segments[this.selected]?.name, set: this.set === null ? undefined : old?.sets[this.set] };
+    // Nothing asks the old model any more.
+    this.inspector.network.clear();
     this.model?.close();
     this.model = model;
     this.title = title;
@@ -84,7 +98,7 @@ export class App {
     this.sideBySide ||= motions.length > 2;
     this.chosen = [motions.length > 0 ? 0 : -1, motions.length > 2 ? -2 : -1];
     this.looks = null;
-    if (!kept) [this.selected, this.set] = [null, null];
+    [this.selected, this.set] = [index(model.about.segments, chosen.segment), index(model.about.sets, chosen.set)];
     this.curves.clear();
     byId("title").textContent = title;
     document.title = `${title} – condyle`;
@@ -100,11 +114,13 @@ export class App {
     this.view.shows(model.about);
     this.view.themed();
     if (!kept) this.view.look(this.box());
+    this.keys.opened(kept);
+    this.goals.opened(kept);
     this.history.begin(model.actors[0]!.asked);
     byId("waiting").hidden = true;
     this.motionsChanged();
     this.posed();
-    this.select(this.selected);
+    this.accented();
     if (!kept && this.figures.length > 1) this.view.look(this.box());
   }
 
@@ -114,7 +130,7 @@ export class App {
     this.looks = looks;
     this.shaped(this.model);
     this.motionsChanged();
-    this.select(this.selected);
+    this.accented();
     this.posed();
   }
 
@@ -154,10 +170,10 @@ export class App {
   async take(files: Iterable<File>): Promise<void> {
     // A model first, whatever the order in which they were dropped.
     const all = await Promise.all([...files].map(async (file) => ({ file, bytes: new Uint8Array(await file.arrayBuffer()) })));
-    const models = /\.(toml|osim|xml|json|urdf|skel|asf|glb|gltf|bvh)$/i;
+    const models = /\.(toml|osim|xml|json|urdf|skel|asf|glb|gltf|vrm|npz|bvh)$/i;
     all.sort((a, b) => Number(models.test(b.file.name)) - Number(models.test(a.file.name)));
     for (const { file, bytes } of all) {
-      await this.attempt(() => this.took(this.core.take(file.name, bytes, this.model), file.name));
+      await this.attempt(async () => this.took(await take(this.core, file.name, bytes, this.model), file.name));
     }
   }
 
@@ -165,6 +181,11 @@ export class App {
   took(taken: Taken, name: string): void {
     if (taken.model) {
       this.open(taken.model, name.replace(/\.[^.]*$/, ""), taken.motion ? [taken.motion] : []);
+    } else if (taken.goals) {
+      this.goals.change(taken.goals);
+    } else if (taken.keys) {
+      this.keys.change(taken.keys);
+      this.timed();
     } else if (taken.motion && this.model && taken.motion.times.length === 1 && !taken.motion.markers) {
       // One frame is a pose, not a motion.
       this.chosen = [-1, -1];
@@ -338,11 +359,13 @@ export class App {
       const motion = this.motions[index];
       if (!motion || motion.times.length === 0) return;
       const actor = model.actor(which);
-      sample(motion, this.timeline.time, actor.asked);
+      if (motion.keyed) motion.keyed.at(this.timeline.time, which);
+      else sample(motion, this.timeline.time, actor.asked);
       // A motion is shown as it is, so that what it breaks is seen.
       actor.pose(false);
     });
     this.curves.draw(model.about, this.seen(), this.timeline.time);
+    this.keys.timed();
     this.posed();
   }
 
@@ -362,8 +385,6 @@ export class App {
     this.selected = segment;
     const { model } = this;
     if (!model) return;
-    const accent = new Color(model.about.colours["accent"] ?? "#e06a2b");
-    this.shape?.accent(new Set(segment === null ? [] : [segment]), accent);
     if (segment !== null) {
       // A bone without coordinates of its own goes with its parent's.
       let at: number | null = segment;
@@ -375,6 +396,14 @@ export class App {
         this.sliders.open(set, model.about);
       }
     }
+    this.accented();
+  }
+
+  /** Shows what is selected. */
+  private accented(): void {
+    const { model, selected } = this;
+    const accent = new Color(model?.about.colours["accent"] ?? "#e06a2b");
+    this.shape?.accent(new Set(selected === null ? [] : [selected]), accent);
     this.inspector.build();
     this.signed();
   }
@@ -405,6 +434,12 @@ export class App {
   hit(ray: import("three").Ray): ReturnType<Shape["hit"]> {
     return this.shape?.hit(ray, this.model!.actors[0]!, new Vector3()) ?? null;
   }
+}
+
+/** Where something of a name is in a list. */
+function index(list: readonly (string | { name: string })[], name: string | undefined): number | null {
+  const at = name === undefined ? -1 : list.findIndex((one) => (typeof one === "string" ? one : one.name) === name);
+  return at < 0 ? null : at;
 }
 
 /** The asked values of a model by name. */

@@ -203,12 +203,12 @@ class Panel {
 
   private field({ value, path }: Row): HTMLElement {
     const name = shown(path);
-    const field = element("input", { type: "number", step: "any", value: String(value.value), "aria-label": `${name} in ${value.unit || "its unit"}`, "data-number": name });
+    const field = element("input", { type: "number", step: "any", value: String(rounded(value.value)), "aria-label": `${name} in ${value.unit || "its unit"}`, "data-number": name });
     field.title = value.written;
     if (value.ways.length < 2) {
       // Asked for once, whether it is by the key or by leaving: a field that was built anew under what is typed fires
       // no change.
-      let asked = value.value;
+      let asked = rounded(value.value);
       const changed = () => {
         const typed = Number(field.value);
         if (field.value === "" || !Number.isFinite(typed)) field.value = String(asked);

@@ -1,6 +1,8 @@
 // The evaluator: condyle compiled to WebAssembly, with the memory that it shares with the page.
 // What its functions do is written in crates/condyle-wasm/src/border.rs.
 
+import type { Goals } from "./goals";
+import type { Key } from "./keys";
 import { unpack } from "./unpack";
 
 interface Exports extends WebAssembly.Exports {
@@ -76,11 +78,11 @@ export class Core {
     input.set(title);
     input.set(bytes, title.length);
     const result = this.exports.take(model?.handle ?? 0xffffffff, title.length);
-    const answer = this.answer<Faults & { motion: PackedMotion | null; warnings: Said[] }>();
+    const answer = this.answer<Faults & Omit<Taken, "model" | "motion"> & { motion: PackedMotion | null }>();
     if (result === 0) throw new Refused(answer.value.faults);
-    const { motion, warnings } = answer.value;
+    const { motion, ...more } = answer.value;
     const read = motion && unpacked(motion, (span) => answer.floats(span));
-    return { model: result > 1 ? new Model(this, result - 2) : null, motion: read, warnings };
+    return { model: result > 1 ? new Model(this, result - 2) : null, motion: read, ...more };
   }
 
   ask<T>(handle: number, question: object): Answer<T> {
@@ -114,6 +116,10 @@ interface Faults {
 export interface Taken {
   model: Model | null;
   motion: Motion | null;
+  /** Key poses, as their file has them. */
+  keys?: Key[];
+  /** Goals of a pose. */
+  goals?: Goals;
   warnings: Said[];
 }
 
@@ -142,9 +148,11 @@ export interface Motion {
   name: string;
   times: number[];
   width: number;
-  values: Float32Array;
+  values: Float32Array | Float64Array;
   markers: { names: string[]; positions: Float32Array } | null;
   spans: Mark[];
+  /** Of key poses: the pose of an actor at any time, the room on the timeline in seconds, and the time of one step. */
+  keyed?: { at(time: number, actor: number): void; from: number; until: number; step: number };
 }
 
 export function unpacked(motion: PackedMotion, floats: (span: Span) => Float32Array): Motion {

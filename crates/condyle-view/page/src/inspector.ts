@@ -52,7 +52,7 @@ export class Inspector {
         element("button", { onclick: () => this.large(name) }, "larger"),
       );
       this.network.show(model, set);
-    }
+    } else this.network.clear();
     if (motions.length > 0) {
       const choice = (which: 0 | 1, none: string) => {
         const select = element("select", { "aria-label": which === 0 ? "motion" : "second motion", "data-which": which });

@@ -38,6 +38,13 @@ export class Network {
     this.root.setAttribute("tabindex", "0");
   }
 
+  /** Shows nothing. */
+  clear(): void {
+    this.model = null;
+    this.root.replaceChildren();
+    this.count = 0;
+  }
+
   show(model: Model, set: number): void {
     this.model = model;
     this.set = set;

@@ -74,6 +74,9 @@ export function pointer(app: App, dragging: { on: boolean }): void {
   };
   canvas.addEventListener("pointerup", finish);
   canvas.addEventListener("pointercancel", finish);
+  canvas.addEventListener("pointerleave", () => {
+    if (!drag) hover.textContent = "";
+  });
   keys(app, dragging, canvas, hover);
 }
 
@@ -124,6 +127,7 @@ function keys(app: App, dragging: { on: boolean }, canvas: HTMLCanvasElement, ho
     ["space", "play or pause", () => app.timeline.toggle()],
     [",", "one frame back", () => app.timeline.step(-1, app.motions[app.chosen[0]] ?? null)],
     [".", "one frame on", () => app.timeline.step(1, app.motions[app.chosen[0]] ?? null)],
+    ["p", "keep the pose as a key at this time", () => app.keys.set()],
     ["u", "undo", () => app.undo()],
     ["y", "redo", () => app.redo()],
     ["0", "the neutral pose", () => app.neutral()],

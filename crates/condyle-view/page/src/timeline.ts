@@ -10,8 +10,12 @@ export class Timeline {
   readonly root: HTMLElement;
   time = 0;
   playing = false;
+  /** Above the slider: what belongs to times. */
+  readonly lane = element("div", { class: "lane", hidden: true });
   private from = 0;
   private to = 0;
+  /** The ends of the slider: key poses have room around them. */
+  private ends: [number, number] = [0, 0];
   private last = 0;
   private readonly play = element("button", { class: "play", title: "play or pause (space)" }, "▶");
   private readonly slide = element("input", { type: "range", step: "any", "aria-label": "time in seconds", id: "time" });
@@ -33,7 +37,7 @@ export class Timeline {
       this.play,
       this.speed,
       element("label", {}, this.loop, " loop"),
-      element("div", { class: "time" }, this.strip, this.slide),
+      element("div", { class: "time" }, this.lane, this.strip, this.slide),
       this.clock,
     );
   }
@@ -45,27 +49,47 @@ export class Timeline {
     this.from = Math.min(...timed.map((motion) => motion.times[0]!));
     this.to = Math.max(...timed.map((motion) => motion.times.at(-1)!));
     if (timed.length === 0) [this.from, this.to] = [0, 0];
-    this.slide.min = String(this.from);
-    this.slide.max = String(this.to);
+    const room = timed.flatMap(({ keyed }) => (keyed ? [keyed.from, keyed.until] : []));
+    this.ends = [Math.min(this.from, ...room), Math.max(this.to, ...room)];
+    this.reach(this.ends[0]);
     this.marked(marks);
-    this.go(Math.min(Math.max(this.time, this.from), this.to));
+    this.go(Math.min(Math.max(this.time, this.ends[0]), this.ends[1]));
+  }
+
+  /** Makes the slider long enough for a time. */
+  reach(time: number): void {
+    if (!Number.isFinite(time)) return;
+    this.ends = [Math.min(this.ends[0], time), Math.max(this.ends[1], time)];
+    [this.slide.min, this.slide.max] = this.ends.map(String) as [string, string];
+  }
+
+  /** Where a time is on the slider, in percent. */
+  share(time: number): number {
+    return (100 * (time - this.ends[0])) / (this.ends[1] - this.ends[0] || 1);
+  }
+
+  /** The time at a place of the window. */
+  timeAt(x: number): number {
+    const { left, width } = this.strip.getBoundingClientRect();
+    const share = Math.min(1, Math.max(0, (x - left) / (width || 1)));
+    return this.ends[0] + share * (this.ends[1] - this.ends[0]);
   }
 
   marked(marks: Mark[]): void {
-    const share = (time: number) => (100 * (time - this.from)) / (this.to - this.from || 1);
     // Of hundreds of marks only the first ones are drawn; the list has them all.
     const drawn = marks.slice(0, 400).map((mark) => {
-      const style = `left:${share(mark.from)}%;width:max(3px,${share(mark.to) - share(mark.from)}%)`;
+      const style = `left:${this.share(mark.from)}%;width:max(3px,${this.share(mark.to) - this.share(mark.from)}%)`;
       return element("i", { class: mark.kind, style, title: mark.what });
     });
     this.strip.replaceChildren(...drawn);
   }
 
   toggle(): void {
+    if (!this.playing && this.to <= this.from) return;
     this.playing = !this.playing;
     this.play.textContent = this.playing ? "❚❚" : "▶";
     if (!this.playing) return;
-    if (this.time >= this.to) this.go(this.from);
+    if (this.time >= this.to || this.time < this.from) this.go(this.from);
     this.last = performance.now();
     const step = (now: number) => {
       if (!this.playing) return;
@@ -87,8 +111,8 @@ export class Timeline {
   /** A share of the whole forward or back. */
   step(frames: number, motion: Motion | null): void {
     const count = motion?.times.length ?? 100;
-    const one = (this.to - this.from) / Math.max(count - 1, 1);
-    this.go(Math.min(this.to, Math.max(this.from, this.time + frames * one)));
+    const one = motion?.keyed?.step ?? (this.to - this.from) / Math.max(count - 1, 1);
+    this.go(Math.min(this.ends[1], Math.max(this.ends[0], this.time + frames * one)));
   }
 
   go(time: number): void {

@@ -82,6 +82,7 @@ export function tools(app: App, dragging: { on: boolean }): void {
     menu("show", ...looks, ...kinds),
     limits,
     drag,
+    button("key", "keep the pose as a key at the timeline's time (p)", () => app.keys.set(), { id: "key" }),
     button("undo", "undo (u, ctrl z)", () => app.undo(), { id: "undo" }),
     button("redo", "redo (y)", () => app.redo(), { id: "redo" }),
     button("neutral", "the neutral pose (0)", () => app.neutral(), { id: "neutral" }),

@@ -140,6 +140,8 @@ export class View {
 
   /** Where a place is in the picture, in CSS pixels; `null` behind the camera. */
   project(place: readonly [number, number, number]): [number, number] | null {
+    // Where the camera is now, not where it was in the last picture.
+    this.camera.updateMatrixWorld();
     const at = new Vector3(...place).project(this.camera);
     if (at.z > 1) return null;
     const { clientWidth: wide, clientHeight: high } = this.canvas;

@@ -2,11 +2,29 @@
 import { execFileSync } from "node:child_process";
 import { fileURLToPath } from "node:url";
 
-export async function evaluator() {
-  const packed = fileURLToPath(new URL("../dist/assets/core.wasm.lzma", import.meta.url));
+async function started(name) {
+  const packed = fileURLToPath(new URL(`../dist/assets/${name}.wasm.lzma`, import.meta.url));
   const module = execFileSync("xz", ["--format=lzma", "--decompress", "--stdout", packed], { maxBuffer: 1 << 28 });
   const { instance } = await WebAssembly.instantiate(module);
-  const core = instance.exports;
+  return instance.exports;
+}
+
+/** What the readers of all formats make of a file. */
+export async function readers() {
+  const all = await started("readers");
+  return (name, content) => {
+    const input = Buffer.concat([Buffer.from(name), Buffer.from(content)]);
+    const at = all.prepare(input.length);
+    new Uint8Array(all.memory.buffer).set(input, at);
+    const good = all.convert(Buffer.byteLength(name)) === 1;
+    const text = new TextDecoder().decode(new Uint8Array(all.memory.buffer, all.text_at(), all.text_length()));
+    if (!good) throw new Error(`${name}: ${text}`);
+    return JSON.parse(text);
+  };
+}
+
+export async function evaluator() {
+  const core = await started("core");
   const bytes = () => new Uint8Array(core.memory.buffer);
   const answer = () => new TextDecoder().decode(bytes().slice(core.text_at(), core.text_at() + core.text_length()));
   const put = (...parts) => {

@@ -74,6 +74,10 @@ fn an_expression_keeps_its_constant_unless_another_way_is_named() {
     // Over the definition of another constant.
     let text = set(&leg, "segment.patella_r.at.1", -0.49, Some(WayKind::Constant));
     assert_eq!(text, LEG.replace("thigh = 0.42", "thigh = 0.5"));
+    // What is a share of a constant does not change the constant unless that is asked for: it comes last.
+    let ways = &leg.find(&path("segment.patella_r.at.0")).unwrap().ways;
+    let kinds: Vec<_> = ways.iter().map(|way| way.kind).collect();
+    assert_eq!(kinds, [WayKind::Factor, WayKind::Number, WayKind::Constant]);
     // A constant alone has no number of its own, and says what else follows.
     let ways = &leg.find(&path("segment.tibia_r.at.1")).unwrap().ways;
     assert_eq!(ways[0].kind, WayKind::Constant);

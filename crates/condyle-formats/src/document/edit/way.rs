@@ -1,7 +1,7 @@
 //! Where a number comes from, and how it can be changed.
 
 use super::change::number;
-use super::expression::Affine;
+use super::expression::{Affine, Followed};
 use super::leaf::{Expression, Found, Keyed, Leaf, Piece};
 use super::{Editable, Source, Step, shown};
 use crate::document::Document;
@@ -298,6 +298,14 @@ impl Maker<'_> {
         }
         if leaf.spot.file > 0 || leaf.context.is_some() {
             ways.extend(self.overridden(leaf));
+        }
+        // A number that is a share of a constant is rarely meant to change all else that follows the constant.
+        let alone = |followed: &Followed| {
+            followed.affine.slope.abs() == 1.0 && followed.affine.offset == 0.0
+        };
+        let shares = |expression: &Expression| !expression.followed.as_ref().is_some_and(alone);
+        if leaf.expression.as_ref().is_some_and(shares) {
+            ways.sort_by_key(|way| way.kind == WayKind::Constant);
         }
         ways
     }
