@@ -18,6 +18,18 @@ fuzz_target!(|data: &[u8]| {
         assert!(frame.iter().all(|value| value.is_finite()), "frames are numbers");
         program.evaluate(frame, Mode::Open, &mut pose).expect("a frame has the model's numbers");
     }
+    if let Ok(covers) = glb::covers(data, &options, &mut beside) {
+        for cover in covers.value {
+            assert_eq!(cover.mesh.positions.len(), cover.weights.len());
+            assert!(
+                cover
+                    .joints
+                    .iter()
+                    .flatten()
+                    .all(|joint| usize::from(*joint) < cover.carriers.len().max(1))
+            );
+        }
+    }
     let found = glb::node_motion(data, &options, &mut beside, &motion);
     let tracks = found.expect("it was read before");
     let Ok(file) = glb::reanimate(data, &tracks, Old::Replaced) else { return };

@@ -1,7 +1,7 @@
 //! Any bytes as a model: no panic, and a model that can be posed, with a Jacobian of the same pose.
 #![no_main]
 
-use condyle_formats::opensim::model;
+use condyle_formats::opensim::{geometry, model};
 use condyle_model::evaluate::ClosureRows;
 use condyle_model::{Jacobian, Mode, Pose, Program};
 use libfuzzer_sys::fuzz_target;
@@ -9,6 +9,7 @@ use libfuzzer_sys::fuzz_target;
 fuzz_target!(|data: &[u8]| {
     let Ok(read) = model::read(data) else { return };
     let model = read.value;
+    let _ = geometry::read(data, &mut |_| Err("it is not given".to_owned()));
     let program = Program::compile(&model);
     let stored = model.defaults();
     assert!(stored.iter().all(|value| value.is_finite()), "defaults are numbers");

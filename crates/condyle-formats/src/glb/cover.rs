@@ -41,6 +41,13 @@ pub struct Cover {
     pub colour: Option<[f64; 3]>,
 }
 
+/// How large surfaces may become in all, beside eight times the size of their file, in bytes.
+const ROOM: usize = 64 << 20;
+/// What a corner takes.
+const CORNER: usize = 72;
+/// What something that carries takes.
+const CARRIER: usize = size_of::<Carrier>();
+
 /// Reads the surfaces of a file whose skeleton [`read`](super::read) gives. Where more than four joints carry a corner, the
 /// four with the largest weights do.
 ///
@@ -64,6 +71,8 @@ pub fn covers(
     let (bones, scales, unit) = figure.scales(tree.nodes.len());
     let mut warnings = Warnings::default();
     let (mut covers, mut left) = (vec![], 0usize);
+    // A mesh that many nodes show is many surfaces.
+    let mut room = bytes.len().saturating_mul(8).saturating_add(ROOM);
     for (index, item) in root.list("nodes")?.iter().enumerate() {
         let Some(mesh) = item.get("mesh") else { continue };
         let mesh = root.element("meshes", mesh.index()?)?;
@@ -102,14 +111,20 @@ pub fn covers(
         };
         for primitive in mesh.list("primitives")? {
             match surface(&root, &primitive, skin.is_some(), carriers.len(), &mut accessors)? {
-                Some((mesh, joints, weights)) => covers.push(Cover {
-                    name: tree.nodes[index].name.clone(),
-                    mesh,
-                    carriers: carriers.clone(),
-                    joints,
-                    weights,
-                    colour: colour(&root, &primitive)?,
-                }),
+                Some((mesh, joints, weights)) => {
+                    let size = CORNER * mesh.positions.len() + CARRIER * carriers.len();
+                    room = room.checked_sub(size + 12 * mesh.triangles.len()).ok_or_else(|| {
+                        Error::new("glb/size", "the surfaces of the file are larger than it can be")
+                    })?;
+                    covers.push(Cover {
+                        name: tree.nodes[index].name.clone(),
+                        mesh,
+                        carriers: carriers.clone(),
+                        joints,
+                        weights,
+                        colour: colour(&root, &primitive)?,
+                    })
+                }
                 None => left += 1,
             }
         }

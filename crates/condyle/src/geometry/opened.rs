@@ -25,7 +25,7 @@ pub fn folder_is(folders: Vec<PathBuf>) {
 ///
 /// # Warnings
 /// `geometry/missing`, a note with the meshes that are nowhere; `geometry/unreadable` for one that is no mesh;
-/// `geometry/ground` for those that belong to no segment. None of these is drawn.
+/// `geometry/ground` for those that belong to no segment; `geometry/size`. None of these is drawn.
 ///
 /// # Errors
 /// A file that cannot be read any more.
@@ -81,6 +81,9 @@ mod meshes {
     use condyle_mesh::Mesh;
     use std::collections::HashMap;
 
+    /// The most corners of all meshes of a model.
+    const MOST_CORNERS: usize = 10_000_000;
+
     pub(super) fn of(
         path: &Path,
         model: &Model,
@@ -92,7 +95,7 @@ mod meshes {
         let content = |error: Error| fail(Cause::Content { error, text: None });
         let Read { value: named, mut warnings } = named.map_err(content)?;
         let (mut found, mut missing) = (HashMap::<&str, Option<Mesh>>::new(), vec![]);
-        let (mut geometry, mut grounded) = (Geometry::default(), 0usize);
+        let (mut geometry, mut grounded, mut corners) = (Geometry::default(), 0usize, 0usize);
         for Attached { segment, file, place } in &named {
             let segment = segment.as_ref().and_then(|name| model.find_segment(name).ok());
             let Some(segment) = segment else {
@@ -122,6 +125,13 @@ mod meshes {
                 }
             });
             let Some(mesh) = mesh else { continue };
+            corners += mesh.positions.len();
+            if corners > MOST_CORNERS {
+                let message = format!("{file} and what follows is not drawn: it is too much");
+                let help = format!("at most {MOST_CORNERS} corners are drawn of a model");
+                warnings.push(Diagnostic::warning("geometry/size", message).with_help(help));
+                break;
+            }
             let mesh = placed(mesh, *place);
             geometry.meshes.push(Placed { name: file.clone(), segment, mesh });
         }
