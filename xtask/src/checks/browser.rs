@@ -8,10 +8,17 @@ use std::process::Command;
 use std::time::Duration;
 
 /// What is run: the page as a file and as a static site, the page as it is served, which edits a model, what people need
-/// who see little or use keys alone, meshes, skins and rows of figures, poses over time and by goals, and rotations in the
-/// space of quaternions.
-const SCRIPTS: [&str; 6] =
-    ["browser.mjs", "authoring.mjs", "accessible.mjs", "looks.mjs", "posing.mjs", "rotations.mjs"];
+/// who see little or use keys alone, meshes, skins and rows of figures, poses over time and by goals, rotations in the
+/// space of quaternions, and that the page shows what `condyle render` shows.
+const SCRIPTS: [&str; 7] = [
+    "browser.mjs",
+    "authoring.mjs",
+    "accessible.mjs",
+    "looks.mjs",
+    "posing.mjs",
+    "rotations.mjs",
+    "render.mjs",
+];
 /// The texts of the shipped models.
 const MODELS: &str = "crates/condyle/models";
 /// The longest that each of them may take, on a machine that does other things as well.

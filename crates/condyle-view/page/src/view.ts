@@ -1,13 +1,13 @@
 // The picture: renderer, camera, light and ground. It draws when something has changed, never by itself.
 
 import {
-  AmbientLight,
   Box3,
   Color,
   DirectionalLight,
   Fog,
   GridHelper,
   Group,
+  HemisphereLight,
   PerspectiveCamera,
   Scene,
   Vector2,
@@ -27,6 +27,12 @@ export const VIEWS: Record<string, [number, number]> = {
   top: [0, 89.9],
 };
 
+/** Strength and direction of lights, as seen: right, up, toward the viewer. */
+const LIGHTS: [number, number, number, number][] = [
+  [0.72, -0.45, 0.65, 0.61],
+  [0.22, 0.8, 0.1, 0.59],
+];
+
 export class View {
   readonly scene = new Scene();
   /** What belongs to the model that is shown. */
@@ -38,7 +44,8 @@ export class View {
   pictures = 0;
   /** Called before each picture. */
   before: (() => void)[] = [];
-  private readonly sun = new DirectionalLight(0xffffff, 2.2);
+  /** From all around: more from above than from below. */
+  private readonly sky = new HemisphereLight(0xffffff, new Color().setScalar(0.1 / 0.26), 0.26 * Math.PI);
   private grid: GridHelper | null = null;
   private wanted = false;
   private up = new Vector3(0, 1, 0);
@@ -49,9 +56,13 @@ export class View {
     // The buffer is kept, so that pictures can be saved and tests can read pixels.
     this.renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
-    this.scene.add(this.content, new AmbientLight(0xffffff, 1.1), this.camera);
-    this.camera.add(this.sun);
-    this.sun.position.set(-0.5, 0.8, 1);
+    this.scene.add(this.content, this.sky, this.camera);
+    // The lights of `condyle render`, which go with the viewer; three.js divides by pi.
+    for (const [strength, right, up, toward] of LIGHTS) {
+      const light = new DirectionalLight(0xffffff, strength * Math.PI);
+      light.position.set(right, up, toward);
+      this.camera.add(light, light.target);
+    }
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.draw());
     new ResizeObserver(() => this.resized()).observe(canvas.parentElement!);
@@ -81,6 +92,7 @@ export class View {
     this.up.set(0, about.up === "y" ? 1 : 0, about.up === "y" ? 0 : 1);
     this.ahead.set(...about.ahead);
     this.camera.up.copy(this.up);
+    this.sky.position.copy(this.up);
     // The controls take the axis from the camera where they are made; this is what they keep of it.
     const controls = this.controls as unknown as { _quat: import("three").Quaternion; _quatInverse: import("three").Quaternion };
     controls._quat.setFromUnitVectors(this.up, new Vector3(0, 1, 0));
