@@ -11,6 +11,7 @@ use clap::Args;
 use condyle::formats::{Recording, trc};
 use condyle::tracking::{Job, Request, Tracking};
 use condyle::{CoordinateKind, Mode, Model, Motion, Pose, Program};
+use condyle_view::{Session, Shown, exported};
 use figure::{Flaws, record, walk, walker};
 use serde_json::json;
 use std::path::PathBuf;
@@ -19,7 +20,7 @@ use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub(crate) struct Demo {
-    /// A folder for the recording, the motions and an animated scene.
+    /// A folder for the recording, the motions, an animated scene, and a page that plays them in a browser.
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// One JSON document on standard output.
@@ -104,12 +105,17 @@ impl Demo {
                 let bytes = motion_format::encoded(format, &model, motion, "demo", markers, &[])?;
                 output::write(&path, &bytes)?;
             }
+            let mut session = Session::of(Model::clone(&model));
+            "demo".clone_into(&mut session.title);
+            let markers = Shown::tracked("recovered".to_owned(), &model, &recording, &robust);
+            session.motions = vec![markers, Shown::of("truth".to_owned(), truth)];
+            output::write(&folder.join("demo.html"), exported(&session, false).as_bytes())?;
             if !self.json {
                 let folder = folder.display();
                 output::print(
                     format!(
-                        "\nIn {folder}: recording.trc, truth.mot, recovered.mot, and recovered.glb, which any \
-                         glTF viewer plays.\n"
+                        "\nIn {folder}: recording.trc, truth.mot, recovered.mot, recovered.glb, which any \
+                         glTF viewer plays, and demo.html, which a browser opens: the motion with its markers, beside the truth.\n"
                     )
                     .as_bytes(),
                 )?;

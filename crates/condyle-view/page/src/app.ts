@@ -57,6 +57,8 @@ export class App {
   /** Names over figures of a row, and how high over the first segment they are. */
   private names: { figure: Figure; text: string; high: number }[] = [];
   private restless = false;
+  /** The middle of the figure when the camera was last told of it. */
+  private stood: Vector3 | null = null;
 
   constructor(
     readonly core: Core,
@@ -116,6 +118,7 @@ export class App {
     this.view.shows(model.about);
     this.view.themed();
     if (!kept) this.view.look(this.box());
+    this.stood = middle(model);
     this.keys.opened(kept);
     this.goals.opened(kept);
     this.history.begin(model.actors[0]!.asked);
@@ -123,7 +126,7 @@ export class App {
     this.motionsChanged();
     this.posed();
     this.accented();
-    if (!kept && this.figures.length > 1) this.view.look(this.box());
+    if (!kept && this.motions.length > 0) this.view.look(this.box());
   }
 
   /** Shows meshes and a skin that came with the model. */
@@ -290,6 +293,7 @@ export class App {
     }
     const motion = this.motions[this.chosen[0]] ?? null;
     this.markers.update(model.actors[0]!, motion, this.timeline.time, 0.008 * Math.min(1, view.unit / 0.05), this.show.has("markers"));
+    this.inspector.missed();
     const up = model.about.up === "y" ? 1 : 2;
     const named = this.names.map(({ figure, text, high }) => {
       const at = figure.actor.world(0, [0, 0, 0]);
@@ -368,6 +372,9 @@ export class App {
     });
     this.curves.draw(model.about, this.seen(), this.timeline.time);
     this.keys.timed();
+    const now = middle(model);
+    if (this.stood && this.chosen[0] >= 0) this.view.along(now.clone().sub(this.stood));
+    this.stood = now;
     this.posed();
   }
 
@@ -453,6 +460,14 @@ function named(model: Model): Map<string, Float64Array> {
 
 /** Colours that are laid over figures beside the first one. */
 const TINTS = [0x86b4ff, 0xffb877, 0x9fdc8c, 0xd9a8ff, 0xff9fae, 0x7fd8d8];
+
+/** The mean of the origins of all segments. */
+function middle(model: Model): Vector3 {
+  const { places } = model.actors[0]!;
+  const sum = new Vector3();
+  for (let at = 0; at < places.length; at += 16) sum.add(new Vector3(places[at + 3], places[at + 7], places[at + 11]));
+  return sum.multiplyScalar(16 / Math.max(places.length, 16));
+}
 
 function sideways(model: Model, by: number): Vector3 {
   const up = model.about.up === "y" ? new Vector3(0, 1, 0) : new Vector3(0, 0, 1);

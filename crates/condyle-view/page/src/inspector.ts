@@ -91,14 +91,19 @@ export class Inspector {
 
   /** Writes numbers that move. */
   refresh(): void {
-    const { model, selected, markers } = this.app;
+    const { model, selected } = this.app;
     if (!model) return;
     if (selected !== null) {
       const [x, y, z] = model.actors[0]!.world(selected, [0, 0, 0]);
       this.place.textContent = [x, y, z].map((v) => (100 * v).toFixed(1)).join(", ") + " cm";
     }
-    this.error.textContent = markers.error === null ? "–" : `${(1000 * markers.error).toFixed(1)} mm on average`;
     this.network.refresh(0);
+  }
+
+  /** Writes how far markers are off, once they were drawn. */
+  missed(): void {
+    const { error } = this.app.markers;
+    this.error.textContent = error === null ? "–" : `${(1000 * error).toFixed(1)} mm on average`;
   }
 
   private findings(): HTMLElement {

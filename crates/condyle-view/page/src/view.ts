@@ -47,6 +47,7 @@ export class View {
   /** From all around: more from above than from below. */
   private readonly sky = new HemisphereLight(0xffffff, new Color().setScalar(0.1 / 0.26), 0.26 * Math.PI);
   private grid: GridHelper | null = null;
+  private square = 0.25;
   private wanted = false;
   private up = new Vector3(0, 1, 0);
   private ahead = new Vector3(1, 0, 0);
@@ -124,6 +125,17 @@ export class View {
     this.draw();
   }
 
+  /** Goes along over the ground, so that what walks stays in the picture. */
+  along(by: Vector3): void {
+    const over = by.clone().addScaledVector(this.up, -by.dot(this.up));
+    if (over.lengthSq() < 1e-12) return;
+    this.camera.position.add(over);
+    this.controls.target.add(over);
+    this.box.translate(over);
+    if (this.grid) this.lay(this.grid);
+    this.controls.update();
+  }
+
   /** Turns the camera about what it looks at, by radians to the side and up. */
   turn(side: number, rise: number): void {
     const off = this.camera.position.clone().sub(this.controls.target);
@@ -185,22 +197,27 @@ export class View {
     const style = getComputedStyle(document.documentElement);
     const line = new Color(style.getPropertyValue("--grid").trim());
     // Squares of 10 cm for what is smaller than half a metre, else of a metre's quarter.
-    const square = size < 0.6 ? 0.05 : 0.25;
-    const count = 2 * Math.ceil((size * 3) / square);
-    this.grid = new GridHelper(count * square, count, line, line);
-    const up = this.up;
-    if (up.z === 1) this.grid.rotation.x = Math.PI / 2;
+    this.square = size < 0.6 ? 0.05 : 0.25;
+    const count = 2 * Math.ceil((size * 3) / this.square);
+    this.grid = new GridHelper(count * this.square, count, line, line);
+    if (this.up.z === 1) this.grid.rotation.x = Math.PI / 2;
+    this.lay(this.grid);
+    const far = this.camera.position.distanceTo(this.controls.target);
+    if (this.scene.fog instanceof Fog) Object.assign(this.scene.fog, { near: far * 1.2, far: far * 3 });
+    this.scene.add(this.grid);
+  }
+
+  /** Puts the grid under what is seen. */
+  private lay(grid: GridHelper): void {
+    const { up, square } = this;
     const low = this.box.min.dot(up);
     const high = this.box.max.dot(up);
     const stands = low > -0.08 * (high - low) && low < 0.6 * (high - low);
     const middle = this.box.getCenter(new Vector3());
     // Lines stay at whole squares, however the figure stands.
     const whole = (x: number) => Math.round(x / square) * square;
-    this.grid.position.set(whole(middle.x), whole(middle.y), whole(middle.z));
-    this.grid.position.addScaledVector(up, (stands ? 0 : low) - this.grid.position.dot(up));
-    const far = this.camera.position.distanceTo(this.controls.target);
-    if (this.scene.fog instanceof Fog) Object.assign(this.scene.fog, { near: far * 1.2, far: far * 3 });
-    this.scene.add(this.grid);
+    grid.position.set(whole(middle.x), whole(middle.y), whole(middle.z));
+    grid.position.addScaledVector(up, (stands ? 0 : low) - grid.position.dot(up));
   }
 
   private resized(): void {

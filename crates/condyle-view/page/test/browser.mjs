@@ -150,6 +150,21 @@ await test("a motion plays, and what it breaks is listed and found", async () =>
   await page.close();
 });
 
+await test("the demo's page follows what walks", async () => {
+  execFileSync(condyle, ["demo", "-o", folder]);
+  const page = await opened(pathToFileURL(join(folder, "demo.html")).href);
+  const at = (time) => page.evaluate((time) => window.condyle.timeline.go(time), time);
+  const root = () => page.evaluate(() => Array.from(window.condyle.model.actors[0].world(0, [0, 0, 0])));
+  await at(0);
+  const [start, first] = [await root(), await pixels(page)];
+  await at(await page.evaluate(() => window.condyle.motions[0].times.at(-1)));
+  const [end, last] = [await root(), await pixels(page)];
+  const way = Math.hypot(end[0] - start[0], end[2] - start[2]);
+  check(way > 2, `it walks ${way} m`);
+  check(last.bone > 0.7 * first.bone, `${first.bone} pixels of bones, and ${last.bone} in the end`);
+  await page.close();
+});
+
 await test("the network opens, and limits are drawn", async () => {
   const page = await opened(exported("shoulder"));
   await page.evaluate(() => {
