@@ -86,33 +86,77 @@ fn spans(model: &Model, tracking: &Tracking) -> Vec<(&'static str, [f64; 2], Str
         spans.push(("jump", ends, jump.to_string()));
     }
     for (index, key) in model.coordinate_keys().into_iter().enumerate() {
-        if tracking.unmoved.iter().any(|id| id.index() == index) {
+        let follows = model.coordinates().get(index).is_some_and(|c| c.follows.is_some());
+        if follows || tracking.unmoved.iter().any(|id| id.index() == index) {
             continue;
         }
-        let mut open: Option<(&'static str, f64)> = None;
-        for (frame, &now) in tracking.times.iter().enumerate() {
-            let kind = match tracking.trust_in(frame).get(index) {
-                Some(Trust::Held) => Some("undetermined"),
-                Some(Trust::AtLimit) => Some("limited"),
-                _ => None,
-            };
-            if open.map(|(kind, _)| kind) != kind {
-                if let Some((kind, from)) = open {
-                    spans.push((kind, [from, now], sentence(&key, kind)));
-                }
-                open = kind.map(|kind| (kind, now));
-            }
-        }
-        if let (Some((kind, from)), Some(&last)) = (open, tracking.times.last()) {
-            spans.push((kind, [from, last], sentence(&key, kind)));
-        }
+        let trust = |frame| match tracking.trust_in(frame).get(index) {
+            Some(Trust::Held) => Some("undetermined"),
+            Some(Trust::AtLimit) => Some("limited"),
+            _ => None,
+        };
+        let found = stretches(&tracking.times, trust);
+        spans.extend(found.into_iter().map(|(kind, ends)| (kind, ends, sentence(&key, kind))));
     }
     spans
+}
+
+/// Stretches of one kind, as one where less than this lies between two of them, in seconds: nobody tells them apart.
+const APART: f64 = 0.1;
+
+/// The stretches of time of each kind, from the kinds of all frames.
+fn stretches(
+    times: &[f64],
+    kind: impl Fn(usize) -> Option<&'static str>,
+) -> Vec<(&'static str, [f64; 2])> {
+    let mut found: Vec<(&'static str, [f64; 2])> = vec![];
+    let mut before = None;
+    for (frame, &now) in times.iter().enumerate() {
+        let kind = kind(frame);
+        // A stretch ends where the next frame begins.
+        if let (Some(_), Some((_, [_, end]))) = (before, found.last_mut()) {
+            *end = now;
+        }
+        match (kind, found.last_mut()) {
+            (Some(kind), Some((last, [_, end]))) if *last == kind && now - *end < APART => {
+                *end = now;
+            }
+            (Some(kind), _) => found.push((kind, [now, now])),
+            _ => {}
+        }
+        before = kind;
+    }
+    found
 }
 
 fn sentence(key: &str, kind: &str) -> String {
     match kind {
         "limited" => format!("markers push {key} against its limit"),
         _ => format!("markers do not determine {key}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::stretches;
+
+    #[test]
+    fn stretches_close_to_each_other_are_one() {
+        let times: Vec<f64> = (0..60).map(|frame| f64::from(frame) / 20.0).collect();
+        // Frames 2 and 3, 5 hundredths later 5, half a second later 16, then another kind to the end.
+        let kind = |frame| match frame {
+            2 | 3 | 5 | 16 => Some("limited"),
+            17.. => Some("undetermined"),
+            _ => None,
+        };
+        let found = stretches(&times, kind);
+        let expected =
+            [("limited", [0.1, 0.3]), ("limited", [0.8, 0.85]), ("undetermined", [0.85, 2.95])];
+        assert_eq!(found.len(), expected.len(), "{found:?}");
+        for ((kind, ends), (wanted, places)) in found.iter().zip(expected) {
+            assert_eq!(*kind, wanted);
+            assert!(ends.iter().zip(places).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
+        }
+        assert!(stretches(&times, |_| None).is_empty());
     }
 }
