@@ -47,7 +47,7 @@ mod tests {
 
     #[test]
     fn a_name_does_not_end_the_script() {
-        let mut session = Session::open("knee".as_ref(), &[]).expect("it is shipped").value;
+        let mut session = Session::open("knee".as_ref(), &[], &[]).expect("it is shipped").value;
         session.title = "</script><script>alert(1)</script>".to_owned();
         let html = exported(&session, false);
         assert!(!html.contains("alert(1)</script>"), "the title is escaped");

@@ -7,7 +7,7 @@
 //!
 //! ```
 //! use condyle_view::{Mode, Session, exported};
-//! let session = Session::open("knee".as_ref(), &[])?.value;
+//! let session = Session::open("knee".as_ref(), &[], &[])?.value;
 //! let html = exported(&session, false);
 //! assert!(html.starts_with("<!doctype html>") && html.contains("knee"));
 //! # Ok::<(), condyle::open::OpenError>(())

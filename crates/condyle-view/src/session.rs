@@ -42,17 +42,21 @@ impl Session {
     }
 
     /// Opens a model, and motions or recordings of it; a recording is tracked. A motion that the model's own
-    /// file holds comes first.
+    /// file holds comes first. Meshes that an `.osim` names are looked for in `meshes`, too, as [`geometry::open`] does.
     ///
     /// # Errors
     /// As [`open::content`]; a recording that cannot be tracked.
-    pub fn open(model: &Path, motions: &[PathBuf]) -> Result<Read<Self>, OpenError> {
+    pub fn open(
+        model: &Path,
+        motions: &[PathBuf],
+        meshes: &[PathBuf],
+    ) -> Result<Read<Self>, OpenError> {
         let Read { value: Animation { model: found, motion }, mut warnings } =
             open::animation(model)?;
         let mut session = Self::of(found);
         let stem = model.file_stem().unwrap_or_default().to_string_lossy();
         session.title = stem.into_owned();
-        let read = geometry::open(model, &session.model)?;
+        let read = geometry::open(model, &session.model, meshes)?;
         warnings.extend(read.warnings);
         let figure = Figure::new(&session.model).with(read.value);
         if !figure.meshes.is_empty() {
@@ -153,7 +157,7 @@ mod tests {
 
     #[test]
     fn a_session_says_what_it_holds() -> Result<(), OpenError> {
-        let mut session = Session::open("knee".as_ref(), &[])?.value;
+        let mut session = Session::open("knee".as_ref(), &[], &[])?.value;
         let motion = Motion { times: vec![0.0, 0.5], frames: vec![vec![0.25], vec![-1.0]] };
         session.motions.push(Shown::of("bend.mot".to_owned(), motion));
         let json: Value = serde_json::from_str(&session.to_json(Mode::Served)).expect("it is JSON");
@@ -180,7 +184,7 @@ mod tests {
         );
         std::fs::write(folder.join("arm.osim"), text)?;
         std::fs::write(folder.join("Geometry/ulna.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0.5\nf 1 2 3\n")?;
-        let read = Session::open(&folder.join("arm.osim"), &[])?;
+        let read = Session::open(&folder.join("arm.osim"), &[], &[])?;
         let missing = read.warnings.iter().filter(|said| said.code == "geometry/missing");
         let missing: Vec<String> = missing.map(|said| said.message.clone()).collect();
         assert_eq!(missing, ["1 of 2 mesh files are not there: `radius.obj`"]);
@@ -192,6 +196,16 @@ mod tests {
         assert_eq!(read.value.geometry[0].1.numbers[32..36], 0.5f32.to_le_bytes());
         let json: Value = serde_json::from_str(&read.value.to_json(Mode::Exported))?;
         assert!(json["model"]["geometry"]["meshes"]["numbers"].is_string());
+        // Others in a folder that is given, for this session and no other.
+        let other = folder.join("other");
+        std::fs::create_dir_all(&other)?;
+        std::fs::write(other.join("radius.obj"), "v 0 0 0\nv 0 1 0\nv 0 0 2\nf 1 2 3\n")?;
+        for (folders, count) in [(vec![], 9), (vec![other], 18), (vec![], 9)] {
+            let read = Session::open(&folder.join("arm.osim"), &[], &folders)?;
+            let json: Value = serde_json::from_str(&read.value.to_json(Mode::Served))?;
+            let positions = &json["model"]["geometry"]["meshes"]["text"]["positions"];
+            assert_eq!(positions, &json!([0, count]), "{folders:?}");
+        }
         std::fs::remove_dir_all(&folder)?;
         Ok(())
     }

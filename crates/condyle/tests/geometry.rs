@@ -15,7 +15,7 @@ fn skins_are_where_numpy_has_them() {
             continue;
         }
         let animation = open::animation(&path).expect("a figure").value;
-        let geometry = geometry::open(&path, &animation.model).expect("skins").value;
+        let geometry = geometry::open(&path, &animation.model, &[]).expect("skins").value;
         let figure = Figure::new(&animation.model).with(geometry);
         let program = Program::compile(&animation.model);
         let mut pose = Pose::new(&program);

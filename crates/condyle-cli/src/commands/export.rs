@@ -52,8 +52,7 @@ impl Page {
         let inputs = [&self.model].into_iter().chain(&self.motion);
         let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
         output::check_distinct(&inputs, &[&self.output])?;
-        condyle::geometry::folder_is(self.geometry);
-        let read = Session::open(&self.model, &self.motion)?;
+        let read = Session::open(&self.model, &self.motion, &self.geometry)?;
         warn_about(&self.model, &read.warnings);
         let mut session = read.value;
         if let Some(title) = self.title {

@@ -76,8 +76,7 @@ impl Render {
         sheet.focus = Focus { names: self.at.clone(), zoom: self.zoom, highlight: self.highlight };
         let Animation { model, motion } = warned(&self.model, open::animation(&self.model)?);
         sheet.poses = self.poses(&model, motion)?;
-        geometry::folder_is(self.geometry.clone());
-        let geometry = warned(&self.model, geometry::open(&self.model, &model)?);
+        let geometry = warned(&self.model, geometry::open(&self.model, &model, &self.geometry)?);
         sheet.show = match (self.show.is_empty(), geometry.skins.is_empty()) {
             (false, _) => show,
             (true, false) => vec![Show::Skin],

@@ -32,10 +32,10 @@ impl View {
             tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build();
         let runtime = runtime.map_err(|error| Failure::new(format!("no threads: {error}")))?;
         let named = self.model.clone().unwrap_or_default();
-        condyle::geometry::folder_is(self.geometry);
         let wanted = Wanted {
             model: self.model,
             motions: self.motion,
+            meshes: self.geometry,
             port: self.port,
             folder: PathBuf::new(),
         };

@@ -31,6 +31,7 @@ struct State {
     /// The model as it was asked for.
     model: Option<PathBuf>,
     motions: Vec<PathBuf>,
+    meshes: Vec<PathBuf>,
     session: Option<Session>,
     /// The model's document; `None` of a model in another format, which cannot be edited.
     authoring: Option<Authoring>,
@@ -44,12 +45,13 @@ impl Desk {
     pub(super) fn open(
         model: Option<&Path>,
         motions: &[PathBuf],
+        meshes: &[PathBuf],
         folder: &Path,
     ) -> Result<Read<Self>, OpenError> {
         let mut warnings = vec![];
         let (mut session, mut authoring) = (None, None);
         if let Some(path) = model {
-            let read = Session::open(path, motions)?;
+            let read = Session::open(path, motions, meshes)?;
             warnings = read.warnings;
             let mut opened = read.value;
             if is_document(path) {
@@ -61,7 +63,9 @@ impl Desk {
             session = Some(opened);
         }
         let (model, motions) = (model.map(Path::to_owned), motions.to_vec());
-        let state = State { model, motions, session, authoring, fault: None, written: None };
+        let meshes = meshes.to_vec();
+        let state =
+            State { model, motions, meshes, session, authoring, fault: None, written: None };
         let desk = Self { state: Mutex::new(state), listeners: Mutex::new(vec![]) };
         Ok(Read { value: desk, warnings })
     }
@@ -203,7 +207,7 @@ impl Desk {
         let was_wrong = before.is_some();
         let changed = match (&mut state.authoring, &state.model) {
             (Some(authoring), _) => authoring.reload(),
-            (None, Some(model)) => match Session::open(model, &state.motions) {
+            (None, Some(model)) => match Session::open(model, &state.motions, &state.meshes) {
                 Ok(read) => {
                     state.session = Some(read.value);
                     Ok(true)

@@ -58,6 +58,8 @@ pub struct Wanted {
     pub model: Option<PathBuf>,
     /// Motions and recordings of it.
     pub motions: Vec<PathBuf>,
+    /// Folders in which meshes are that the model names, beside its own.
+    pub meshes: Vec<PathBuf>,
     /// The port; a free one if it is 0.
     pub port: u16,
     /// The folder in which the first edit of a shipped model makes a file; the current one if it is empty.
@@ -100,7 +102,7 @@ impl Server {
                 true => Path::new("."),
                 false => &wanted.folder,
             };
-            Desk::open(wanted.model.as_deref(), &wanted.motions, folder)
+            Desk::open(wanted.model.as_deref(), &wanted.motions, &wanted.meshes, folder)
         });
         let opened = opened.await.map_err(|error| StartError::Io(io::Error::other(error)))?;
         let opened = opened.map_err(StartError::Open)?;

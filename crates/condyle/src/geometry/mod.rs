@@ -12,7 +12,7 @@ use condyle_mesh::Mesh;
 use condyle_model::SegmentId;
 
 #[cfg(feature = "formats")]
-pub use opened::{folder_is, open};
+pub use opened::open;
 pub use skin::{Hold, Skin};
 
 /// Meshes and skins of a model.

@@ -7,21 +7,12 @@ use crate::open::OpenError;
 use condyle_diagnostics::Read;
 use condyle_model::Model;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
-
-/// Where meshes are looked for beside the places that a model gives.
-static FOLDERS: OnceLock<Vec<PathBuf>> = OnceLock::new();
-
-/// Says in which folders meshes are looked for that are not beside their model. The first call counts.
-pub fn folder_is(folders: Vec<PathBuf>) {
-    let _ = FOLDERS.set(folders);
-}
 
 /// Opens what the file of a model names: the meshes of an `.osim`, the skins of glTF. There is nothing in other files,
 /// and in shipped models.
 ///
-/// Meshes are looked for as OpenSim does: beside the model, in the folder `Geometry` beside it, then in those that
-/// [`folder_is`] said. A name that leads upwards or begins at the root counts by its last part alone.
+/// Meshes are looked for as OpenSim does: beside the model, in the folder `Geometry` beside it, then in
+/// `folders`. A name that leads upwards or begins at the root counts by its last part alone.
 ///
 /// # Warnings
 /// `geometry/missing`, a note with the meshes that are nowhere; `geometry/unreadable` for one that is no mesh;
@@ -29,16 +20,16 @@ pub fn folder_is(folders: Vec<PathBuf>) {
 ///
 /// # Errors
 /// A file that cannot be read any more.
-pub fn open(path: &Path, model: &Model) -> Result<Read<Geometry>, OpenError> {
+pub fn open(path: &Path, model: &Model, folders: &[PathBuf]) -> Result<Read<Geometry>, OpenError> {
     #[cfg(feature = "surfaces")]
     if !open::is_standard_input(path) && open::ending(path) == "osim" {
-        return meshes::of(path, model, FOLDERS.get().map_or(&[], Vec::as_slice));
+        return meshes::of(path, model, folders);
     }
     #[cfg(feature = "glb")]
     if open::is_gltf(path) && !open::is_standard_input(path) {
         return skins(path, model);
     }
-    let _ = (path, model);
+    let _ = (path, model, folders);
     Ok(Read::clean(Geometry::default()))
 }
 
@@ -142,7 +133,7 @@ mod meshes {
                 found.len(),
                 listed(&missing)
             );
-            let help = "they are looked for beside the model, in `Geometry` there, and where --geometry says; \
+            let help = "they are looked for beside the model, in `Geometry` there, and in folders that are given; \
                         bones are drawn by joints instead";
             warnings.push(Diagnostic::note("geometry/missing", message).with_help(help));
         }
